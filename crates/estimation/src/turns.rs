@@ -1,13 +1,15 @@
 //! Laws of axes that scatter by independent small turns, some of which may be any.
 
 use gyradius_attitude::{RadiallyConstrainedGaussian, RcgError};
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Matrix4, UnitQuaternion, Vector3};
 
 /// The variance of half a turn that stands for an angle nobody knows: uniform to 1e-4, and small
 /// enough for the other variances to keep their digits beside it.
 const FREE: f64 = 100.0;
 /// Radial variance of a law that is concentrated: no second lobe, and no effect on the rest.
 const CONCENTRATED: f64 = 0.01;
+/// What is added to a Σ⁻¹ that is next to nothing in some direction.
+const SHARE: f64 = 1e-4;
 /// Deviation of turns, rad, below which axes are taken to be fixed: half its square is what the law
 /// of the axes can still hold beside the radial variance.
 pub(crate) const FIXED: f64 = 2e-6;
@@ -46,9 +48,55 @@ pub(crate) fn chart_variances(variances: [f64; 3]) -> ([f64; 3], f64) {
     (local, if free > 0 { FREE } else { CONCENTRATED.max(0.25 * widest) })
 }
 
+/// The same law with a covariance whose entries hold it: with a tiny share of the unit matrix added to Σ⁻¹, which on unit
+/// quaternions leaves the density as it is to a factor of e^(±[`SHARE`]). Of a law that is wide in one direction and fixed to
+/// 1e-4 rad in another, it is 1e-3, and the smallest variance loses as much.
+pub(crate) fn held_by_entries(law: &RadiallyConstrainedGaussian) -> RadiallyConstrainedGaussian {
+    if law.covariance().amax() * SHARE <= 1.0 {
+        return law.clone();
+    }
+    // −½(x − m)ᵀ(Σ⁻¹ + c)(x − m) adds −½c(1 + |m|²) + c m·x where |x| = 1.
+    let eigen = law.precision().symmetric_eigen();
+    // Entries of 1/c lose 1e-16/c of the smallest variance.
+    let share = SHARE.max(1e-8 * eigen.eigenvalues.amax().sqrt());
+    let variances = eigen.eigenvalues.map(|precision| 1.0 / (precision.max(0.0) + share));
+    let axes = eigen.eigenvectors;
+    let covariance = axes * Matrix4::from_diagonal(&variances) * axes.transpose();
+    let covariance = (covariance + covariance.transpose()) * 0.5;
+    RadiallyConstrainedGaussian::new(law.mean(), covariance).unwrap_or_else(|_| law.clone())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Laws of any width with an infinite radial variance: the density hardly changes, and what is read from the entries is
+    /// the same law.
+    #[test]
+    fn entries_hold_wide_laws() {
+        use rand::RngExt;
+        use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+        let mut rng = ChaCha8Rng::seed_from_u64(8);
+        for _ in 0..200 {
+            let mut attitude = || gyradius_attitude::UniformAttitude.sample(&mut rng);
+            use rand_distr::Distribution;
+            let (mean, frame, other) = (attitude(), attitude(), attitude());
+            let axes = *frame.to_rotation_matrix().matrix();
+            let local = [0; 3].map(|_| libm::pow(10.0, rng.random_range(-8.0..1.0)));
+            let turns = axes.tr_mul(&(Matrix3::from_diagonal(&Vector3::from(local)) * axes));
+            let turns = (turns + turns.transpose()) * 0.5;
+            let law =
+                RadiallyConstrainedGaussian::from_rotation_covariance(mean, turns, f64::INFINITY);
+            let law = law.unwrap();
+            let held = held_by_entries(&law);
+            let read = RadiallyConstrainedGaussian::new(held.mean(), held.covariance()).unwrap();
+            for q in [mean, mean.slerp(&other, 1e-3), mean.slerp(&other, 0.1), other] {
+                let (before, after) = (law.ln_haar_density(&q), read.ln_haar_density(&q));
+                let error = (after - before).abs();
+                assert!(error <= 3e-3 * (1.0 + before.abs()), "{local:?}: {before} {after}");
+            }
+        }
+    }
 
     #[test]
     fn turns_are_about_principal_axes() {

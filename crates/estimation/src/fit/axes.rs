@@ -5,24 +5,33 @@ use gyradius_statistics::tail;
 use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 
 use super::{
-    matching::{FLOOR, mean_attitude, vector_part},
+    matching::{mean_attitude, vector_part},
     relabel::Sample,
     root::RootFit,
+    round::{direction, mean_about, round_axes},
 };
-use crate::turns::{FIXED, law_of_turns, law_of_turns_about};
+use crate::turns::{FIXED, held_by_entries, law_of_turns, law_of_turns_about};
 
 /// Uniform angles are taken for not uniform this often.
 const SIZE: f64 = 0.01;
-/// By how much the ln-likelihood of a law with one free turn must exceed that of uniform axes, and a law without
-/// a free turn that of uniform axes, for it to be taken: half of what χ² exceeds at 1 %, with 3 degrees of freedom
-/// and with 6 more.
-const LESS_FREE: [f64; 3] = [0.0, 5.672, 5.672 + 8.406];
+/// By how much the ln-likelihood of a law with one free turn must exceed that of uniform axes: half of what χ² exceeds at
+/// 1 % with 5 degrees of freedom, as it is the largest over all directions of a tensor with 5 components.
+const LESS_FREE: f64 = 7.543;
+/// By how much that of a law without a free turn must exceed that of one with a free turn, of many samples: with the 10
+/// parameters that it has more.
+const DETERMINED: f64 = 11.605;
+/// That is exceeded as rarely in few samples if it grows by this over their number: simulated, 30 to 300 of them.
+const FEW: f64 = 20.0;
 /// Moments this many deviations apart are never taken for each other.
 const APART: f64 = 3.0;
 /// Below this radial variance there is no second lobe, and narrow laws are all the same.
 const CONCENTRATED: f64 = 0.01;
 /// Turns narrower than this, rad², say nothing of the radial variance unless there are two groups.
 const NARROW: f64 = 0.1;
+/// Mean squares of half tilts below this have no cut at a right angle.
+const NEAR: f64 = 0.005;
+/// 1/(2σ²) of half tilts that are taken for any: the density differs by half of this from end to end.
+const WIDEST: f64 = 1e-3;
 /// A second lobe that holds fewer samples than this holds none: rounded, less than one.
 const LEAST_LOBE: f64 = 0.5;
 
@@ -34,7 +43,8 @@ const LEAST_LOBE: f64 = 0.5;
 pub enum AxesFinding {
     /// All three angles have a mean and a scatter.
     Determined,
-    /// The axes of all samples are the same, or turn about fewer than three directions.
+    /// The axes of all samples are the same, or turn about fewer than three directions, as those of bodies do that have two
+    /// equal moments each: a turn about the third axis changes nothing.
     Still,
     /// One principal axis has a direction, the other two point anywhere about it: as for two equal
     /// moments.
@@ -94,13 +104,12 @@ impl AxesFit {
     ) -> Result<(Self, f64, RadiallyConstrainedGaussian), FitError> {
         let mean = mean_attitude(samples.iter().map(|s| &s.attitude));
         let determined = Self::determined(samples, mean)?;
-        let told = ln_likelihood(&determined.law) - LESS_FREE[2];
+        let asked = DETERMINED * (1.0 + FEW / samples.len() as f64);
+        let told = ln_likelihood(&determined.law) - LESS_FREE - asked;
         let free = undetermined(samples, roots, &mean).into_iter().map(|finding| {
             let (fit, less_free) = match finding {
-                AxesFinding::FreeTurn { axis } => {
-                    (Self::about(samples, &mean, axis - 1), LESS_FREE[1])
-                }
-                _ => (Self::plain(mean, [f64::INFINITY; 3], AxesFinding::Free), LESS_FREE[0]),
+                AxesFinding::FreeTurn { axis } => (Self::about(samples, axis - 1), LESS_FREE),
+                _ => (Self::plain(mean, [f64::INFINITY; 3], AxesFinding::Free), 0.0),
             };
             let height = ln_likelihood(&fit.law) - less_free;
             (fit, height)
@@ -109,11 +118,12 @@ impl AxesFit {
             let widest = determined.law.clone();
             return Ok((determined, told, widest));
         };
-        // A turn that samples with two equal moments do not have is whatever they were taken apart with.
-        let none = (0..3).any(|axis| is_round(samples, axis));
-        if none {
-            let widest = free.law.clone();
-            return Ok((free, height, widest));
+        // Samples with two equal moments have no turn about the third axis: only their tilts have a law, which those of a
+        // free turn hold where they are wide.
+        if round_axes(samples).contains(&true) {
+            let fit = if determined.turn_covariance.trace() < NARROW { determined } else { free };
+            let widest = fit.law.clone();
+            return Ok((fit, height, widest));
         }
         let widest = determined.law.clone();
         let (best, height) = if told > height { (determined, told) } else { (free, height) };
@@ -129,7 +139,11 @@ impl AxesFit {
                 let turns = Self::plain(mean, local, self.finding);
                 Self { law: turns.law, turn_covariance: turns.turn_covariance, ..self }
             }
-            _ => self,
+            AxesFinding::Still => {
+                let turns = Self::still(self.turn_covariance, mean);
+                Self { law: turns.law, turn_covariance: turns.turn_covariance, ..self }
+            }
+            AxesFinding::Determined => self,
         }
     }
 
@@ -181,30 +195,16 @@ impl AxesFit {
 
     /// One axis has a direction. With its tilt t = (t_a, t_b), half turns, and the free angle taken
     /// out, |t|² has the density ∝ exp(−|t|²/(2σ²)) on [0, 1].
-    fn about(samples: &[Sample], mean: &UnitQuaternion<f64>, axis: usize) -> Self {
+    fn about(samples: &[Sample], axis: usize) -> Self {
         let n = samples.len() as f64;
-        // The mean direction of the axis in the body, sign and all the rest aside.
-        let direction = |q: &UnitQuaternion<f64>| q.inverse() * Vector3::ith(axis, 1.0);
-        let sum: Matrix3<f64> =
-            samples.iter().map(|s| direction(&s.attitude)).map(|a| a * a.transpose()).sum();
-        let eigen = sum.symmetric_eigen();
-        let mut mean_axis: Vector3<f64> =
-            eigen.eigenvectors.column(eigen.eigenvalues.imax()).into();
-        let old = direction(mean);
-        if mean_axis.dot(&old) < 0.0 {
-            mean_axis = -mean_axis;
-        }
-        let mean = match UnitQuaternion::rotation_between(&old, &mean_axis) {
-            Some(turn) => mean * turn.inverse(),
-            None => *mean,
-        };
-        // |t|² = sin² of half the tilt.
-        let share = samples.iter().map(|s| {
-            let c = direction(&s.attitude).dot(&mean_axis);
-            0.5 * (1.0 - c.abs()).max(0.0)
-        });
-        let share = share.sum::<f64>() / n;
-        let variance = tilt_variance(share);
+        let mean = mean_about(samples, axis);
+        let mean_axis = direction(&mean, axis);
+        // |t|² = sin² of half the tilt, up to a right angle: which end of the axis is which, nobody knows.
+        let squares: Vec<f64> = samples
+            .iter()
+            .map(|s| 0.5 * (1.0 - direction(&s.attitude, axis).dot(&mean_axis).abs()).max(0.0))
+            .collect();
+        let variance = tilt_variance(&squares);
         let mut local = [4.0 * variance; 3];
         local[axis] = f64::INFINITY;
         let mut fit = Self::plain(mean, local, AxesFinding::FreeTurn { axis: axis + 1 });
@@ -216,7 +216,7 @@ impl AxesFit {
         // The tilts in the body, along the other two axes of the mean.
         let (mut aa, mut ab, mut bb) = (0.0, 0.0, 0.0);
         for s in samples {
-            let a = direction(&s.attitude);
+            let a = direction(&s.attitude, axis);
             let a = a * 1.0_f64.copysign(a.dot(&mean_axis));
             let p = r * a;
             let (x, y) = (p[(axis + 1) % 3], p[(axis + 2) % 3]);
@@ -234,7 +234,19 @@ impl AxesFit {
     fn determined(samples: &[Sample], mean: UnitQuaternion<f64>) -> Result<Self, FitError> {
         let attitudes: Vec<_> = samples.iter().map(|s| s.attitude).collect();
         let mut fit = match RadiallyConstrainedGaussian::fit(&attitudes) {
-            Err(FitError::Degenerate { .. }) => return Ok(Self::still(samples, mean)),
+            Err(FitError::Degenerate { .. }) => {
+                let r = *mean.to_rotation_matrix().matrix();
+                let covariance = r.tr_mul(&(products_of_turns(samples, &mean) * r));
+                let n = samples.len() as f64;
+                let mut fit = Self::still(covariance, mean);
+                let c = fit.turn_covariance;
+                if c.amax() > 0.0 {
+                    fit.mean_covariance = Some(c / n);
+                    let error = |i, j| ((c[(i, i)] * c[(j, j)] + c[(i, j)].powi(2)) / n).sqrt();
+                    fit.turn_errors = Some(Matrix3::from_fn(error));
+                }
+                return Ok(fit);
+            }
             other => other?,
         };
         let radial = fit.radial();
@@ -262,7 +274,7 @@ impl AxesFit {
         let share = lobes.then(|| fit.law().far_half_share());
         // q and −q are one attitude: the mean on the side of the samples' mean.
         Ok(Self {
-            law: fit.law().clone(),
+            law: held_by_entries(fit.law()),
             finding: AxesFinding::Determined,
             turn_covariance,
             turn_errors: fit.turn_covariance_errors(),
@@ -275,9 +287,10 @@ impl AxesFit {
     }
 
     /// Attitudes on a sphere of lower dimension: turns about the directions in which there are any, whatever these are.
-    fn still(samples: &[Sample], mean: UnitQuaternion<f64>) -> Self {
-        let eigen = products_of_turns(samples, &mean).symmetric_eigen();
-        let about = eigen.eigenvectors.transpose() * mean.to_rotation_matrix().matrix();
+    /// The covariance is that of small turns in body axes.
+    fn still(covariance: Matrix3<f64>, mean: UnitQuaternion<f64>) -> Self {
+        let eigen = covariance.symmetric_eigen();
+        let about = eigen.eigenvectors.transpose();
         let local = eigen.eigenvalues.map(|v| if v > FIXED * FIXED { v } else { 0.0 });
         Self::turning(mean, &about, local.into(), AxesFinding::Still)
     }
@@ -300,21 +313,29 @@ fn products_of_turns(samples: &[Sample], mean: &UnitQuaternion<f64>) -> Matrix3<
     turns.map(|t| t * t.transpose()).sum::<Matrix3<f64>>() / samples.len() as f64
 }
 
-/// θ/2 with θ − 1/(e^{1/θ} − 1) = `share`, the mean of an exponential law cut off at one.
-fn tilt_variance(share: f64) -> f64 {
-    let mean = |theta: f64| theta - 1.0 / libm::expm1(1.0 / theta);
-    if !(share < 0.499) {
-        return f64::INFINITY;
-    }
-    if share < 0.01 {
+/// The most likely σ² of half tilts t with |t|² = u or 1 − u, of which `squares` holds the smaller: u has the density
+/// ∝ cosh((½ − u)/(2σ²)) on [0, ½], so (½ − u) tanh((½ − u)/(2σ²)) is on average ½ coth(1/(4σ²)) − 2σ². Infinite if the
+/// axis points anywhere.
+fn tilt_variance(squares: &[f64]) -> f64 {
+    let n = squares.len() as f64;
+    // In λ = 1/(2σ²), which is the mean of 1/u where it is large. Positive below the solution, negative above it.
+    let excess = |lambda: f64| {
+        let mean = squares.iter().map(|u| (0.5 - u) * libm::tanh((0.5 - u) * lambda)).sum::<f64>();
+        mean / n - (0.5 / libm::tanh(0.5 * lambda) - 1.0 / lambda)
+    };
+    let share = squares.iter().sum::<f64>() / n;
+    if share < NEAR {
         return 0.5 * share;
     }
-    let (mut low, mut high) = (share, 1e3);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if mean(middle) < share { low = middle } else { high = middle }
+    let (mut low, mut high) = (WIDEST, 1.0 / share);
+    if !(excess(low) > 0.0) {
+        return f64::INFINITY;
     }
-    0.5 * low
+    while high - low > 1e-9 * high {
+        let middle = 0.5 * (low + high);
+        if excess(middle) > 0.0 { low = middle } else { high = middle }
+    }
+    0.5 / low
 }
 
 /// Which angles of the axes the samples may leave undetermined: by tests of uniformity that do not
@@ -330,13 +351,19 @@ fn undetermined(
         let (a, b) = (roots[(k + 1) % 3], roots[(k + 2) % 3]);
         (a.mean() - b.mean()).abs() > APART * a.deviation().hypot(b.deviation())
     });
+    let round = round_axes(samples);
+    if round.iter().filter(|round| **round).count() > 1 {
+        return vec![AxesFinding::Free];
+    }
     let mut findings = Vec::new();
-    let round = [0, 1, 2].map(|axis| is_round(samples, axis));
     if uniform_p_value(samples, apart) > SIZE {
         findings.push(AxesFinding::Free);
     }
     for (axis, apart) in apart.into_iter().enumerate() {
-        if (0..3).any(|other| other != axis && round[other]) {
+        if round[axis] {
+            findings.push(AxesFinding::FreeTurn { axis: axis + 1 });
+        }
+        if round.contains(&true) {
             continue;
         }
         // Named by moment, an axis is known but for its sign; else up to quarter turns.
@@ -354,15 +381,6 @@ fn undetermined(
         }
     }
     findings
-}
-
-/// Whether the moments about the other two axes are the same in every sample, to the digits of tables.
-fn is_round(samples: &[Sample], axis: usize) -> bool {
-    let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
-    samples.iter().all(|s| {
-        let size = s.roots.into_iter().fold(0.0, f64::max);
-        (s.roots[a] - s.roots[b]).abs() <= FLOOR * size
-    })
 }
 
 /// p-value of uniform axes, from tensors that change with no naming of the axes that could be
@@ -457,13 +475,36 @@ mod tests {
         }
     }
 
+    /// Tilts drawn from the law ∝ exp(−|t|²/(2σ²)) with either end of the axis: the estimate is likelier than its neighbours,
+    /// and near the truth.
     #[test]
-    fn tilts_of_a_cut_exponential_come_back() {
-        for variance in [1e-6, 0.004, 0.02, 0.3] {
-            let theta: f64 = 2.0 * variance;
-            let share = theta - 1.0 / (1.0 / theta).exp_m1();
-            assert!((tilt_variance(share) / variance - 1.0).abs() < 1e-6, "{variance}");
+    fn tilts_come_back_whichever_end_is_which() {
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        for variance in [1e-6, 0.004, 0.02, 0.1, 0.3_f64] {
+            let theta = 2.0 * variance;
+            const N: usize = 20_000;
+            let squares: Vec<f64> = (0..N)
+                .map(|_| {
+                    let cut = -(-1.0 / theta).exp_m1();
+                    let u = -theta * (-rng.random::<f64>() * cut).ln_1p();
+                    u.min(1.0 - u)
+                })
+                .collect();
+            let ln_likelihood = |variance: f64| -> f64 {
+                let lambda = 0.5 / variance;
+                let of = |u: &f64| (-lambda * u).exp() + (-lambda * (1.0 - u)).exp();
+                squares.iter().map(|u| of(u).ln()).sum::<f64>()
+                    + N as f64 * (lambda.ln() - (-(-lambda).exp_m1()).ln())
+            };
+            let found = tilt_variance(&squares);
+            for other in [0.98, 1.02] {
+                assert!(ln_likelihood(found) > ln_likelihood(other * found), "{variance}: {found}");
+            }
+            // The information on ln σ² falls from one a sample to little where the tilt is wide.
+            let error = if variance > 0.05 { 0.2 } else { 0.03 };
+            assert!((found / variance - 1.0).abs() < error, "{variance}: {found}");
         }
-        assert_eq!(tilt_variance(0.5), f64::INFINITY);
+        let any: Vec<f64> = (0..1000).map(|i| (f64::from(i) + 0.5) / 2000.0).collect();
+        assert_eq!(tilt_variance(&any), f64::INFINITY);
     }
 }

@@ -104,8 +104,8 @@ pub(super) fn mean_attitude<'a>(
 /// and scatter are taken anew; until no label changes. Nearness in attitude and in the moments count
 /// together, each in units of its own scatter: axes that point the same way stay together where
 /// moments cross, moments that differ stay apart where axes turn. Three starts: axes ordered by
-/// moment, the nearest to those of the mean matrix, the nearest to those of the first sample. The
-/// most likely outcome is taken.
+/// moment, the nearest to those of the mean matrix, the nearest to those of the middle sample. The
+/// most likely outcome is taken. The samples come in ascending order of their first entry.
 pub(super) fn matched(samples: &[Sample], mean_axes: &UnitQuaternion<f64>) -> Matched {
     let nearest = |reference: &UnitQuaternion<f64>, ordered: bool| -> Vec<Sample> {
         let near = |s: &Sample| {
@@ -119,13 +119,14 @@ pub(super) fn matched(samples: &[Sample], mean_axes: &UnitQuaternion<f64>) -> Ma
         };
         samples.iter().map(near).collect()
     };
-    let by_moment = samples.first().map(|s| nearest(&s.attitude, true));
+    let middle = samples.get(samples.len() / 2);
+    let by_moment = middle.map(|s| nearest(&s.attitude, true));
     let reference =
         by_moment.as_ref().map_or(*mean_axes, |s| mean_attitude(s.iter().map(|s| &s.attitude)));
     let starts = [
         nearest(&reference, true),
         nearest(mean_axes, false),
-        nearest(&samples.first().map_or(*mean_axes, |s| s.attitude), false),
+        nearest(&middle.map_or(*mean_axes, |s| s.attitude), false),
     ];
     let mut best: Option<(f64, Matched)> = None;
     for start in starts {

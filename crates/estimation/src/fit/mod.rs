@@ -8,6 +8,7 @@ mod names;
 mod notes;
 mod relabel;
 mod root;
+mod round;
 #[cfg(test)]
 mod tests;
 
@@ -15,12 +16,14 @@ use gyradius_attitude::{FitError, RadiallyConstrainedGaussian};
 use gyradius_dispersion::{PrincipalDispersion, ScalarRoots, ScalarRootsError};
 use gyradius_inertia::{Inertia, RootSecondMoments, SecondMoments};
 use nalgebra::{Matrix3, UnitQuaternion};
+use std::cmp::Ordering;
 
 #[cfg(feature = "serde")]
 use crate::read::belong;
 use matching::matched;
 use names::Names;
 use relabel::{Relabeling, Sample};
+use round::{round_axes, straightened};
 
 pub use axes::{AxesFinding, AxesFit};
 pub use goodness::{Aspect, Assessment, FitTest};
@@ -41,7 +44,7 @@ const ROUNDS: usize = 60;
 /// How often they are drawn in vain, before the search ends: at least, and more where more names are in doubt.
 const IN_VAIN: f64 = 2.0;
 const IN_VAIN_IF_ALL: f64 = 10.0;
-/// Two attitudes nearer than this, rad, are the same axes.
+/// A turn smaller than this, rad, renames nothing: the least that does is a quarter turn.
 const SAME: f64 = 1e-3;
 
 /// Why samples have no [`PrincipalFit`].
@@ -206,44 +209,52 @@ impl PrincipalFit {
         if let Some(index) = sums.iter().position(|sum| !(sum / median <= LARGER)) {
             return Err(PrincipalFitError::Large { index, sum: sums[index], median });
         }
-        let apart: Vec<Sample> = samples.iter().map(take_apart).collect();
-        let matched = matched(&apart, &mean_axes(samples));
+        // In an order of their own, so that the same samples have the same fit in any order.
+        let mut order: Vec<usize> = (0..samples.len()).collect();
+        order.sort_by(|a, b| by_entries(&samples[*a], &samples[*b]));
+        let sorted: Vec<Inertia> = order.iter().map(|row| samples[*row]).collect();
+        let apart: Vec<Sample> = sorted.iter().map(take_apart).collect();
+        let matched = matched(&apart, &mean_axes(&sorted));
         let mut fitted = renamed(fit(matched.samples)?);
         // The fitted mean may be named otherwise than the first guess of it.
         for _ in 0..3 {
             let axes = fitted.nominal.principal_axes().attitude();
             let g = nearest(&fitted.axes.law().mean(), &axes);
-            if fitted.axes.law().mean().angle_to(&axes) < SAME {
-                break;
-            }
-            if g.turn.angle() > 1e-6 {
+            if g.turn.angle() > SAME {
                 fitted = fit(fitted.samples.iter().map(|sample| sample.relabeled(g)).collect())?;
             } else {
-                // Moments equal to rounding: a turn of the axes that nothing depends on.
+                // Rounding, or two moments that are equal to it: a turn of the axes that nothing depends on.
                 fitted.axes = fitted.axes.at(axes);
                 break;
             }
         }
         let doubtful = Names::of(&fitted.roots, fitted.axes.law()).doubtful(&fitted.samples);
         let Fitted { samples: named, nominal, roots, axes, .. } = fitted;
+        // Two axes have changed their names for nothing if the body is round about the third.
+        let round = round_axes(&named);
+        let for_nothing = |a: usize, b: usize| a == b || round[3 - a - b];
         let (mut swapped, mut flipped) = (0, 0);
         for (sample, before) in named.iter().zip(&apart) {
             let g = nearest(&before.attitude, &sample.attitude);
-            swapped += usize::from(g.swaps());
-            flipped += usize::from(!g.swaps() && g.turn.angle() > 1e-6);
+            let swaps = !(0..3).all(|k| for_nothing(k, g.order[k]));
+            swapped += usize::from(swaps);
+            flipped += usize::from(!swaps && g.turn.angle() > SAME && !round.contains(&true));
         }
+        let sample_deviations = deviations(&sorted);
+        let mut rows: Vec<(usize, Sample)> = order.into_iter().zip(named).collect();
+        rows.sort_by_key(|(row, _)| *row);
         let mean = RootSecondMoments::new(roots.map(|r| r.mean()))
             .map_err(|_| ScalarRootsError::Variance { axis: 1, value: f64::INFINITY })?;
         let gaussian = ScalarRoots::normal(mean, roots.map(|r| r.deviation() * r.deviation()))?;
         let law = PrincipalDispersion::new(gaussian, axes.law().clone());
         let matching = Matching { swapped, flipped, doubtful, converged: matched.converged };
         Ok(Self {
-            samples: named,
+            samples: rows.into_iter().map(|(_, sample)| sample).collect(),
             nominal,
             roots,
             axes,
             matching,
-            sample_deviations: deviations(samples),
+            sample_deviations,
             law,
         })
     }
@@ -296,6 +307,11 @@ gyradius_dispersion::written!(
     }
 );
 
+fn by_entries(a: &Inertia, b: &Inertia) -> Ordering {
+    let pairs = a.entries().into_iter().zip(b.entries());
+    pairs.map(|(a, b)| a.total_cmp(&b)).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+}
+
 fn deviations(samples: &[Inertia]) -> [f64; 6] {
     let rows: Vec<[f64; 6]> = samples.iter().map(Inertia::entries).collect();
     let n = rows.len() as f64;
@@ -318,6 +334,7 @@ struct Fitted {
 }
 
 fn fit(samples: Vec<Sample>) -> Result<Fitted, PrincipalFitError> {
+    let samples = straightened(samples);
     let columns = [0, 1, 2].map(|k| samples.iter().map(|s| s.roots[k]).collect::<Vec<f64>>());
     let n = samples.len() as f64;
     let sizes = columns.each_ref().map(|c| (c.iter().map(|k| k * k).sum::<f64>() / n).sqrt());

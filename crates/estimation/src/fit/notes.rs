@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{AxesFinding, DOUBTFUL, PrincipalFit, root::RootEstimate};
+use super::{AxesFinding, DOUBTFUL, PrincipalFit, root::RootEstimate, round::round_axes};
 
 /// Moments nearer than this, in deviations of their difference, count as equal within their scatter.
 const EQUAL: f64 = 2.0;
@@ -26,6 +26,11 @@ pub enum FitNote {
         /// Deviation of that turn otherwise, rad.
         #[cfg_attr(feature = "serde", serde(rename = "turn_rad"))]
         turn: f64,
+    },
+    /// Two principal moments are equal in every sample, or all three: a turn changes nothing.
+    Round {
+        /// The third axis, from 1; none if all moments are equal.
+        axis: Option<usize>,
     },
     /// One turn of the axes is undetermined though no two moments are equal.
     FreeTurn {
@@ -100,6 +105,18 @@ impl fmt::Display for FitNote {
                 }
                 Ok(())
             }
+            Self::Round { axis: Some(axis) } => {
+                let [a, b] = others(*axis);
+                write!(
+                    f,
+                    "principal moments {a} and {b} are equal in every sample: a turn about axis {axis} changes nothing, and \
+                     of it the samples say nothing"
+                )
+            }
+            Self::Round { axis: None } => f.write_str(
+                "the three principal moments are equal in every sample: a turn changes nothing, and of the axes the \
+                 samples say nothing",
+            ),
             Self::FreeTurn { axis } => write!(
                 f,
                 "the samples do not determine the turn about principal axis {axis}: the law has it \
@@ -152,6 +169,15 @@ impl fmt::Display for FitNote {
     }
 }
 
+/// The two other axes, in ascending order, all from 1.
+fn others(axis: usize) -> [usize; 2] {
+    match axis {
+        1 => [2, 3],
+        2 => [1, 3],
+        _ => [1, 2],
+    }
+}
+
 impl PrincipalFit {
     /// What a reader should know: equal moments, undetermined turns, lost signs, doubtful matches.
     #[must_use]
@@ -159,7 +185,13 @@ impl PrincipalFit {
         let mut notes = Vec::new();
         let finding = self.axes.finding();
         let mut told = false;
-        for axis in 0..3 {
+        let round = round_axes(&self.samples);
+        match (0..3).find(|axis| round[*axis]) {
+            Some(_) if round == [true; 3] => notes.push(FitNote::Round { axis: None }),
+            Some(axis) => notes.push(FitNote::Round { axis: Some(axis + 1) }),
+            None => {}
+        }
+        for axis in (0..3).filter(|axis| !round[*axis]) {
             let (a, b) = (self.roots[(axis + 1) % 3], self.roots[(axis + 2) % 3]);
             let scatter = a.deviation().hypot(b.deviation());
             if !((a.mean() - b.mean()).abs() < EQUAL * scatter) {
@@ -169,13 +201,14 @@ impl PrincipalFit {
             told |= free;
             let r = *self.axes.law().mean().to_rotation_matrix().matrix();
             let turn = (r * self.axes.turn_covariance() * r.transpose())[(axis, axis)];
-            let mut axes = [(axis + 1) % 3 + 1, (axis + 2) % 3 + 1];
-            axes.sort_unstable();
+            let axes = others(axis + 1);
             if finding != AxesFinding::Free {
                 notes.push(FitNote::EqualMoments { axes, free, turn: turn.max(0.0).sqrt() });
             }
         }
         match finding {
+            // Told above.
+            _ if round.contains(&true) => {}
             AxesFinding::FreeTurn { axis } if !told => notes.push(FitNote::FreeTurn { axis }),
             AxesFinding::Free => notes.push(FitNote::Free),
             AxesFinding::Still => {

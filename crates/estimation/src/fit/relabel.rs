@@ -32,11 +32,6 @@ impl Relabeling {
             })
         })
     }
-
-    /// Whether an order of the axes changes, and not only signs.
-    pub(super) fn swaps(&self) -> bool {
-        self.order != [0, 1, 2]
-    }
 }
 
 /// Roots of the second moments and the attitude of the axes they belong to.
@@ -77,7 +72,7 @@ mod tests {
             Inertia::from_second_moments(k, &s.attitude).unwrap()
         };
         let all = Relabeling::all();
-        assert!(!all[0].swaps() && all[0].turn.angle() < 1e-15);
+        assert!(all[0].order == [0, 1, 2] && all[0].turn.angle() < 1e-15);
         for (i, g) in all.iter().enumerate() {
             assert!((body(&sample.relabeled(g)).matrix() - body(&sample).matrix()).amax() < 1e-13);
             for other in &all[..i] {

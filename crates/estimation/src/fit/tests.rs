@@ -1,6 +1,7 @@
 //! Tests of the fit of the paper's model to samples of an inertia.
 
 mod hard_tables;
+mod round_bodies;
 
 use super::*;
 use gyradius_attitude::UniformAttitude;

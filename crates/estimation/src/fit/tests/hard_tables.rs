@@ -31,9 +31,9 @@ fn wide_axes_of_overlapping_roots_are_found() {
         let height = |law: &Law| -> f64 {
             samples.iter().map(|s| law.ln_density(&(*s).into()).unwrap()).sum()
         };
-        // Uniform axes are given up for 14.1 more.
+        // Uniform axes are given up for 19.9 more.
         let gain = height(fit.law()) - height(&truth);
-        assert!(gain > -14.1, "{seed}: {gain}, {:?}", fit.axes().finding());
+        assert!(gain > -19.9, "{seed}: {gain}, {:?}", fit.axes().finding());
         doubtful += fit.matching().doubtful;
         if !fit.assess(&mut rng).fits() {
             refused.push(seed);
