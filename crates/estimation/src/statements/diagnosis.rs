@@ -117,7 +117,7 @@ impl Context {
                     let because = if implied > stated {
                         self.why_more(model, entry, stated)
                     } else {
-                        self.why_less(entry, stated)
+                        self.why_less(model, entry, stated)
                     };
                     warnings.push(StatementWarning::Missed { entry, stated, implied, because });
                 }
@@ -149,20 +149,29 @@ impl Context {
         }
     }
 
-    fn why_less(&self, entry: usize, stated: f64) -> MissedBecause {
+    /// What keeps a product from more: whatever it would gain the most without.
+    fn why_less(&self, model: &StatedModel, entry: usize, stated: f64) -> MissedBecause {
         if entry < 3 {
             return MissedBecause::Tied;
         }
-        let reached = |outcome: &Option<Outcome>| {
-            outcome.as_ref().is_some_and(|it| it.entries[entry] >= (1.0 - AGREE) * stated)
+        let binding = self.stated.axes.is_some_and(|axes| {
+            let turns = model.turns().into_iter().zip(axes);
+            turns.into_iter().any(|(turn, limit)| turn >= (1.0 - AGREE) * limit)
+        });
+        // With the moments as they are stated, and with nothing else stated.
+        let implied = model.implied().deviations()[entry];
+        let of = |outcome: Option<&Outcome>, least: f64| {
+            outcome.map_or(least, |it| it.entries[entry].clamp(least, stated.max(least)))
         };
-        if reached(&self.unlimited) {
-            MissedBecause::AxesLimit
-        } else if reached(&self.alone) {
-            MissedBecause::MomentsLimit
-        } else {
-            MissedBecause::Rotations
-        }
+        let unlimited = of(self.unlimited.as_ref().filter(|_| binding), implied);
+        let alone = of(self.alone.as_ref(), unlimited);
+        let gains = [
+            (stated - alone, MissedBecause::Rotations),
+            (alone - unlimited, MissedBecause::MomentsLimit),
+            (unlimited - implied, MissedBecause::AxesLimit),
+        ];
+        let largest = gains.into_iter().max_by(|(a, _), (b, _)| a.total_cmp(b));
+        largest.map_or(MissedBecause::Rotations, |(_, because)| because)
     }
 }
 

@@ -9,6 +9,7 @@ use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::Distribution;
 
+mod reasons;
 mod still;
 
 fn body(moments: [f64; 3], products: [f64; 3]) -> Inertia {

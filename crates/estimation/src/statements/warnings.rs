@@ -155,7 +155,7 @@ pub enum MissedBecause {
     AxesLimit,
     /// The moments as they are stated do not.
     MomentsLimit,
-    /// Rotations cannot move it so much, the moments that they mix being too near to each other or the
+    /// Rotations cannot move it so much beside the others, the moments that they mix being too near to each other or the
     /// axes lying as they do.
     Rotations,
 }
@@ -296,8 +296,8 @@ impl fmt::Display for MissedBecause {
                 f.write_str("the axes, as they are stated, do not turn far enough for more")
             }
             Self::Rotations => f.write_str(
-                "rotations of the principal axes cannot move this product so much: the moments that \
-                 they mix are too near to each other",
+                "rotations of the principal axes cannot move this product so much beside the others: the moments that they \
+                 mix are too near to each other, or what turns this product turns others further than is stated of them",
             ),
         }
     }

@@ -1,0 +1,61 @@
+//! Why a product does not come out as it is stated: what is named would let it come nearer if it were not stated.
+
+use super::*;
+
+/// Random bodies about random axes, of which axes, products and mostly moments are stated.
+#[test]
+fn what_keeps_a_product_from_more_is_what_it_would_gain_by() {
+    let mut rng = ChaCha8Rng::seed_from_u64(12);
+    let mut told = [0; 3];
+    for _ in 0..24 {
+        let k = [0; 3].map(|_| rng.random_range(1.0..10.0));
+        let attitude = UniformAttitude.sample(&mut rng);
+        let nominal =
+            Inertia::from_second_moments(SecondMoments::new(k).unwrap(), &attitude).unwrap();
+        let degrees = [0; 3].map(|_| libm::pow(10.0, rng.random_range(-1.0..1.3)));
+        let sizes = [0; 3].map(|_| libm::pow(10.0, rng.random_range(-2.0..0.5)));
+        let share = libm::pow(10.0, rng.random_range(-2.0..1.5));
+        let statements = Statements {
+            axes: Some(AxesStatement::each(degrees, 1.0).unwrap()),
+            products: Some(ProductsStatement::new(sizes, 1.0).unwrap()),
+            moments: percent(share).filter(|_| rng.random_bool(0.8)),
+            ..Statements::default()
+        };
+        let model = statements.model(&nominal, None).unwrap();
+        let without = Statements { axes: None, ..statements.clone() };
+        let alone = Statements { moments: None, ..without.clone() };
+        let of = |statements: &Statements, entry: usize| {
+            let model = statements.model(&nominal, None).unwrap();
+            model.implied().deviations()[entry].min(sizes[entry - 3])
+        };
+        for warning in model.warnings() {
+            let StatementWarning::Missed { entry, stated, implied, because } = *warning else {
+                continue;
+            };
+            let most = 0.1 * (stated - implied).max(0.0);
+            match because {
+                MissedBecause::AxesLimit => {
+                    told[0] += 1;
+                    let reached = model.turns().into_iter().zip(degrees);
+                    assert!(reached.into_iter().any(|(t, limit)| t > 0.96 * limit.to_radians()));
+                    assert!(of(&without, entry) - implied > most, "{warning}");
+                }
+                MissedBecause::MomentsLimit => {
+                    told[1] += 1;
+                    assert!(statements.moments.is_some());
+                    assert!(of(&alone, entry) - implied > most, "{warning}");
+                }
+                MissedBecause::Rotations => {
+                    told[2] += 1;
+                    assert!(stated - of(&alone, entry) > 3.0 * most, "{warning}");
+                }
+                MissedBecause::Axes { .. }
+                | MissedBecause::Moments { .. }
+                | MissedBecause::Mass { .. }
+                | MissedBecause::Together
+                | MissedBecause::Tied => {}
+            }
+        }
+    }
+    assert!(told.into_iter().all(|count| count >= 3), "{told:?}");
+}
