@@ -37,6 +37,14 @@ pub enum PartFinding {
         /// Entry, stated deviation and deviation of the law, kg·m².
         entries: Vec<(&'static str, f64, f64)>,
     },
+    /// Two entries go together in the draws, though they are stated as independent. In axes of another direction than the
+    /// part's own, deviations are then others than independent entries would have.
+    Correlated {
+        /// The two that do so the most.
+        entries: [&'static str; 2],
+        /// Their correlation.
+        correlation: f64,
+    },
 }
 
 impl PartFinding {
@@ -45,7 +53,7 @@ impl PartFinding {
     pub fn is_impossible(&self) -> bool {
         match self {
             Self::Flat { .. } | Self::Product { .. } => true,
-            Self::Rounded { .. } | Self::Moved { .. } => false,
+            Self::Rounded { .. } | Self::Moved { .. } | Self::Correlated { .. } => false,
         }
     }
 }
@@ -84,6 +92,11 @@ impl fmt::Display for PartFinding {
                 }
                 Ok(())
             }
+            Self::Correlated { entries: [one, other], correlation } => write!(
+                f,
+                "its entries are stated as independent, and no law of bodies was found that has them so: {one} and {other} \
+                 have a correlation of {correlation:.2} in the draws"
+            ),
         }
     }
 }

@@ -27,6 +27,8 @@ const LEAST_MASS: f64 = 1e-30;
 const MOST_MASS_DEVIATION: f64 = 10.0;
 /// Deviations that differ by no more than this share of what is stated, or of a tenth of the largest, are the same.
 const SAME: f64 = 0.01;
+/// A correlation of entries stated as independent that is worth a word.
+const APART: f64 = 0.2;
 
 /// What is stated of a part.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -244,6 +246,16 @@ fn judge(findings: &mut Vec<PartFinding>, law: &SecondMomentLaw, stated: &[f64; 
             findings.push(PartFinding::Flat { dimensions: law.rank() });
         }
         findings.push(PartFinding::Moved { entries: moved });
+    }
+    let pairs = (0..6).flat_map(|e| (0..e).map(move |f| (f, e)));
+    let correlation = |(e, f): (usize, usize)| law.covariance()[(e, f)] / (found[e] * found[f]);
+    let strongest = pairs
+        .map(|pair| (pair, correlation(pair)))
+        .filter(|(_, correlation)| correlation.abs() > APART)
+        .max_by(|(_, a), (_, b)| a.abs().total_cmp(&b.abs()));
+    if let Some(((e, f), correlation)) = strongest {
+        let entries = [e, f].map(|entry| InertiaMatrix::ENTRY_NAMES[entry]);
+        findings.push(PartFinding::Correlated { entries, correlation });
     }
 }
 

@@ -16,6 +16,10 @@ use super::symmetric::{
 /// Second moments below this share of the largest are none.
 const NONE: f64 = 1e-9;
 
+/// How much the square of a correlation weighs beside that of a relative difference of a deviation: independence is mostly
+/// nobody's statement, deviations are.
+const CORRELATION: f64 = 0.01;
+
 /// Σ = T S Tᵀ with T Tᵀ the second moments of the mean body and S random, positive definite, of mean one.
 ///
 /// Where the mean body is a plate, T has two columns; where it is a rod, one: a matrix Σ ⪰ 0 of mean Σ̄ has Σ n = 0
@@ -85,24 +89,30 @@ impl SecondMomentLaw {
             let covariance = mapped(&inertia_of_second_moments(), &law.covariance());
             Some(Self { draws: Draws::Scaled(Box::new(law)), covariance, ..fixed.clone() })
         };
-        // Each has its limits: what comes nearest to the stated deviations is taken.
+        // Each has its limits: what comes nearest to what is stated is taken.
         let laws = [
             scaled(&absolute),
             scaled(&with_free_moments(&nominal, &absolute, &deviations)),
             NearestLaw::new(&stated).map(relative),
         ];
-        let off = |law: &Self| law.off(&deviations);
+        let off = |law: &Self| law.off(covariance, &deviations);
         laws.into_iter().flatten().min_by(|a, b| off(a).total_cmp(&off(b)))
     }
 
-    /// How far the deviations are from those stated: a sum of squares of relative differences.
-    fn off(&self, stated: &[f64; 6]) -> f64 {
-        let largest = stated.iter().copied().fold(0.0, f64::max);
+    /// How far it is from what is stated: a sum of squares of relative differences of the deviations, and of differences
+    /// of the correlations.
+    fn off(&self, stated: &Matrix6, deviations: &[f64; 6]) -> f64 {
+        let largest = deviations.iter().copied().fold(0.0, f64::max);
+        let size = |e: usize| deviations[e].max(0.1 * largest);
         let square = |e: usize| {
-            let gap = self.covariance[(e, e)].max(0.0).sqrt() - stated[e];
-            (gap / stated[e].max(0.1 * largest)).powi(2)
+            let gap = self.covariance[(e, e)].max(0.0).sqrt() - deviations[e];
+            (gap / size(e)).powi(2)
         };
-        (0..6).map(square).sum()
+        let pair = |e: usize, f: usize| {
+            let gap = self.covariance[(e, f)] - stated[(e, f)];
+            CORRELATION * (gap / (size(e) * size(f))).powi(2)
+        };
+        (0..6).map(|e| square(e) + (0..e).map(|f| pair(e, f)).sum::<f64>()).sum()
     }
 
     pub(super) fn mean(&self) -> &Inertia {

@@ -22,8 +22,8 @@ fn what_keeps_a_product_from_more_is_what_it_would_gain_by() {
             ..Statements::default()
         };
         let model = statements.model(&nominal, None).unwrap();
-        let without = Statements { axes: None, ..statements.clone() };
-        let alone = Statements { moments: None, ..without.clone() };
+        let without = Statements { axes: None, ..statements };
+        let alone = Statements { moments: None, ..without };
         let of = |statements: &Statements, entry: usize| {
             let model = statements.model(&nominal, None).unwrap();
             model.implied().deviations()[entry].min(sizes[entry - 3])
