@@ -100,6 +100,7 @@ pub fn judge(matrix: &Matrix3<f64>, mass_kg: Option<f64>, tolerance: f64) -> Bod
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Vector3;
     use proptest::prelude::*;
 
     fn diagonal(d: [f64; 3]) -> Matrix3<f64> {
@@ -115,6 +116,36 @@ mod tests {
         assert!(is_possible(&diagonal([0.333333, 0.666666, 1.0]), 1e-6));
         assert!(!is_possible(&diagonal([0.3333, 0.6666, 1.0]), 1e-6));
         assert!(!is_possible(&diagonal([0.333333, 0.666666, 1.0]), 0.0));
+    }
+
+    /// Rods and plates in directions that fill the sphere evenly, of sizes that fill a decade: few lie beyond 1e-6, and none
+    /// beyond 3e-6.
+    #[test]
+    fn six_digits_put_few_plates_and_rods_beyond_the_tolerance() {
+        const N: u32 = 20_000;
+        const GOLDEN: f64 = 0.618_033_988_749_894_9;
+        let six_digits = |x: f64| format!("{x:.5e}").parse::<f64>().unwrap();
+        let (mut rods, mut plates) = (0, 0);
+        for i in 0..N {
+            let part = |step: f64| (f64::from(i) * step).fract();
+            let z = 2.0 * (f64::from(i) + 0.5) / f64::from(N) - 1.0;
+            let (sin, cos) = (std::f64::consts::TAU * part(GOLDEN)).sin_cos();
+            let across = (1.0 - z * z).sqrt();
+            let a = Vector3::new(across * cos, across * sin, z);
+            let b = a.cross(&Vector3::new(sin, -cos, 0.3)).normalize();
+            let size = 10_f64.powf(part(std::f64::consts::SQRT_2));
+            let ratio = part(std::f64::consts::E);
+            let printed =
+                |sigma: Matrix3<f64>| (Matrix3::identity() * sigma.trace() - sigma).map(six_digits);
+            let rod = printed(a * a.transpose() * size);
+            let plate = printed((a * a.transpose() + b * b.transpose() * ratio) * size);
+            rods += u32::from(!is_possible(&rod, 1e-6));
+            plates += u32::from(!is_possible(&plate, 1e-6));
+            assert!(is_possible(&rod, 3e-6) && is_possible(&plate, 3e-6), "{rod} {plate}");
+        }
+        let share = |count: u32| f64::from(count) / f64::from(N);
+        assert!((share(rods) - 1.0 / 36.0).abs() < 0.003, "{}", share(rods));
+        assert!(share(plates) < 0.004, "{}", share(plates));
     }
 
     #[test]
