@@ -5,6 +5,9 @@ use crate::{StatisticsError, error, law};
 /// The most runs that are planned for: as a float, each number of runs up to here is exact.
 pub(crate) const MAX_PLANNED: u64 = 1_000_000_000_000_000;
 
+/// How many failures before those that are enough from there on may be enough as well, at most.
+const SHORTLY: f64 = 256.0;
+
 /// Whether a requirement "at least a share p of the flights succeed, with confidence c" is met.
 ///
 /// ```
@@ -33,9 +36,10 @@ pub enum Verdict {
         /// The least number of further runs after which the requirement is met, if none of them fails; none if they
         /// are more than 10¹⁵.
         if_no_more_fail: Option<u64>,
-        /// A number of further runs after which the requirement is met, if the share of failures stays as it is,
+        /// The least number of further runs after which the requirement is met, if the share of failures stays as it is,
         /// counted up to whole failures. None if it is never met then, as the share of failures is 1 − p or more or
-        /// so near to it that 10¹⁵ runs do not do, and if there are no runs yet.
+        /// so near to it that 10¹⁵ runs do not do, and if there are no runs yet. Nearer to it than by one percent of it, a
+        /// number that is enough.
         at_this_rate: Option<u64>,
     },
 }
@@ -105,7 +109,12 @@ pub(crate) trait Rule {
         while !enough(failures + step) {
             step *= 2;
         }
-        self.least_runs(law::first(failures + step / 2, failures + step, enough))
+        // Whole failures make it true now and then shortly before, the longer the nearer the rate is to the share.
+        let from_there = law::first(failures + step / 2, failures + step, enough);
+        let rate = failures as f64 / (self.failure_share() * runs as f64);
+        let shortly = (16.0 + 4.0 / (1.0 - rate)).min(SHORTLY) as u64;
+        let mut before = from_there.saturating_sub(shortly).max(failures)..from_there;
+        self.least_runs(before.find(|allowed| enough(*allowed)).unwrap_or(from_there))
     }
 }
 
@@ -148,3 +157,35 @@ macro_rules! judged {
     };
 }
 pub(crate) use judged;
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{Acceptance, Confidence};
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(128))]
+
+        /// Counted one by one: the first number of runs that is met with the share of failures so far, rounded up.
+        #[test]
+        fn the_least_runs_at_this_rate_are_the_least(
+            share in 0.3..0.99_f64,
+            confidence in 0.5..0.99_f64,
+            runs in 1..200_u64,
+            failed in 0.0..0.99_f64,
+        ) {
+            let rule = Acceptance::new(share, Confidence::new(confidence).unwrap()).unwrap();
+            let failures = (failed * (1.0 - share) * runs as f64) as u64;
+            if let Verdict::Undecided { at_this_rate: Some(more), .. } = rule.verdict(failures, runs).unwrap() {
+                let met = |total: u64| {
+                    rule.met((total * failures).div_ceil(runs), total)
+                };
+                prop_assert!(met(runs + more));
+                let least = (runs..runs + more).find(|total| met(*total));
+                prop_assert_eq!(least, None);
+            }
+        }
+    }
+}
