@@ -125,14 +125,31 @@ impl ForeignTable {
         Self { path: path.to_owned(), files, form, columns, origin, counting }
     }
 
-    /// That it holds the rows of all runs, as far as it is known.
+    /// That it holds the rows of all runs, as they were written, as far as it is known.
     pub(crate) fn check_rows(&self) -> Result<(), RowsError> {
-        match &self.origin {
-            Some(origin) if !origin.rows.is_all() => {
-                let (path, campaign) = (self.path.clone(), origin.manifest.clone());
-                Err(RowsError { path, campaign, rows: origin.rows })
-            }
-            Some(_) | None => Ok(()),
+        let Some(origin) = &self.origin else { return Ok(()) };
+        let error = |problem| {
+            let (path, campaign) = (self.path.clone(), origin.manifest.clone());
+            Err(RowsError { path, campaign, problem })
+        };
+        if !origin.rows.is_all() {
+            return error(RowsProblem::Kept { rows: origin.rows });
+        }
+        let damaged = match origin.damaged() {
+            Ok(damaged) => damaged,
+            Err(unread) => return error(RowsProblem::Unread { problem: unread.to_string() }),
+        };
+        if let Some(first) = damaged.first() {
+            let (first, count) = (first.clone(), damaged.len());
+            return error(RowsProblem::Damaged { first, count, of: origin.files.len() });
+        }
+        // What it says nothing of may be the same runs again.
+        let known = |file: &&PathBuf| {
+            origin.files.iter().any(|(known, _)| known.file_name() == file.file_name())
+        };
+        match self.files.iter().find(|file| !known(file)) {
+            Some(file) => error(RowsProblem::Unknown { file: file.clone() }),
+            None => Ok(()),
         }
     }
 
@@ -247,15 +264,36 @@ pub struct ForeignError {
     problem: String,
 }
 
-/// A table that holds the rows of some runs only, which were not chosen by chance.
+/// A run table of a study that does not hold the rows of all runs as they were written, so that it cannot tell how many keep
+/// a requirement.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "{}: {} says that the study kept rows = \"{}\" of its run tables, so that this one cannot tell how many of all runs keep a requirement: \
-     the report and summary.json of the study hold its verdicts, and a table of a study that keeps all rows can be judged",
-    path.display(), campaign.display(), rows.name()
-)]
+#[error("{}: {} says that {problem}", path.display(), campaign.display())]
 pub struct RowsError {
     path: PathBuf,
     campaign: PathBuf,
-    rows: Rows,
+    problem: RowsProblem,
+}
+
+/// What the folder of a study says against a table in it.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+enum RowsProblem {
+    /// Rows that were not chosen by chance.
+    #[error(
+        "the study kept rows = \"{}\" of its run tables, so that this one cannot tell how many of all runs keep a requirement: \
+         the report and summary.json of the study hold its verdicts, and a table of a study that keeps all rows can be judged",
+        rows.name()
+    )]
+    Kept { rows: Rows },
+    /// Blocks that are gone, or whose content is another.
+    #[error(
+        "its runs are in {of} files, and of these {count} are gone or not as they were written, the first being {}: the command that made \
+         the study does these runs again",
+        first.display()
+    )]
+    Damaged { first: PathBuf, count: usize, of: usize },
+    /// A file that is none of the study's.
+    #[error("{} is none of its files: move it elsewhere", file.display())]
+    Unknown { file: PathBuf },
+    #[error("its files are the runs, and one cannot be read: {problem}")]
+    Unread { problem: String },
 }

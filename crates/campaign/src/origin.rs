@@ -5,8 +5,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use rayon::prelude::*;
+
 use crate::{
     folder::{MANIFEST, Manifest, RUNS},
+    hash::sha256_of_file,
     kept::Rows,
     requirement::Counting,
 };
@@ -19,9 +22,23 @@ pub(crate) struct Origin {
     pub(crate) counting: Counting,
     /// The rows that were kept of the runs.
     pub(crate) rows: Rows,
+    /// The files of the table, as it says: where they are, and their SHA-256.
+    pub(crate) files: Vec<(PathBuf, String)>,
 }
 
 impl Origin {
+    /// The files of the table that are gone or not as they were written.
+    pub(crate) fn damaged(&self) -> io::Result<Vec<PathBuf>> {
+        let is_damaged = |(file, hash): &&(PathBuf, String)| match sha256_of_file(file) {
+            Ok(found) => Ok(found != *hash),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(true),
+            Err(error) => Err(error),
+        };
+        let files = self.files.par_iter();
+        let found = files.map(|file| Ok(is_damaged(&file)?.then(|| file.0.clone())));
+        Ok(found.collect::<io::Result<Vec<_>>>()?.into_iter().flatten().collect())
+    }
+
     /// Of a file in `runs/MODEL` of a campaign's folder, or of that folder of the model; none elsewhere.
     pub(crate) fn of(table: &Path) -> io::Result<Option<Self>> {
         let whole = fs::canonicalize(table)?;
@@ -46,6 +63,14 @@ impl Origin {
                 manifest.display()
             ))
         })?;
-        Ok(Some(Self { manifest, counting: read.counting(), rows: read.kept().rows() }))
+        let (counting, rows) = (read.counting(), read.kept().rows());
+        // The table is the folder of a model, or one file in it.
+        let end = |up: usize| whole.ancestors().nth(up).and_then(Path::file_name);
+        let model = end(up - 1).and_then(|name| name.to_str()).unwrap_or_default();
+        let of_table = |file: &PathBuf| up == 1 || file.file_name() == end(0);
+        let blocks = read.blocks_of(model).into_iter().filter(|block| block.has_file());
+        let files = blocks.map(|block| (folder.join(block.name()), block.sha256().to_owned()));
+        let files = files.filter(|(file, _)| of_table(file)).collect();
+        Ok(Some(Self { manifest, counting, rows, files }))
     }
 }

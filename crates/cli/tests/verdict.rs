@@ -152,6 +152,39 @@ fn rows_of_failed_runs_alone_are_refused() {
     }
 }
 
+/// A table of a study whose files are not those that were written says nothing of all runs, and one file of it nothing of
+/// itself if it is another.
+#[test]
+fn tables_with_lost_or_damaged_runs_are_refused() {
+    let scratch = Scratch::new();
+    fs::write(scratch.path("it.toml"), scenario("runs = 17000")).unwrap();
+    scratch.run(&["study", "--scenario", "it.toml", "--out", "it"]);
+    let folder = "it/runs/proposed";
+    let block = format!("{folder}/000016384-000016999.parquet");
+    same_as_study(&scratch, folder, "it", 0);
+    let whole = fs::read(scratch.path(&block)).unwrap();
+    let refused = |tables: &[&str], word: &str| {
+        for table in tables {
+            let said = scratch.done(&["verdict", table, "--require", REQUIRE], 2);
+            assert!(said.contains("it/campaign.json says that") && said.contains(word), "{said}");
+        }
+    };
+    fs::remove_file(scratch.path(&block)).unwrap();
+    refused(&[folder], "1 are gone or not as they were written");
+    // A bit in a page of data, which is not where a reader of Parquet would notice.
+    let mut damaged = whole.clone();
+    damaged[whole.len() / 3] ^= 1;
+    fs::write(scratch.path(&block), damaged).unwrap();
+    let said = scratch.done(&["verdict", folder, "--require", REQUIRE], 2);
+    assert!(said.starts_with("error: "), "{said}");
+    fs::write(scratch.path(&block), &whole).unwrap();
+    fs::write(scratch.path(&format!("{folder}/more.parquet")), &whole).unwrap();
+    let said = scratch.done(&["verdict", folder, "--require", REQUIRE], 2);
+    assert!(said.contains("more.parquet"), "{said}");
+    fs::remove_file(scratch.path(&format!("{folder}/more.parquet"))).unwrap();
+    same_as_study(&scratch, folder, "it", 0);
+}
+
 /// A run that stands twice in a folder is refused with both files, whatever the copy is called.
 #[test]
 fn copies_of_runs_are_refused() {

@@ -425,7 +425,10 @@ fn verdict(judged: &Judged) -> PageCell {
             };
             let all = if_no_more_fail.map(|runs| more(runs, "if all keep it"));
             let rate = at_this_rate.map(|runs| more(runs, "if failures go on at this rate"));
-            all.into_iter().chain(rate).fold(cell, PageCell::line)
+            let again = (if_no_more_fail.or(at_this_rate).is_some()
+                && judgement.looks() == Looks::Once)
+                .then(|| Text::default().quiet("a second look takes a second risk: see --until"));
+            all.into_iter().chain(rate).chain(again).fold(cell, PageCell::line)
         }
     }
 }

@@ -136,6 +136,11 @@ impl Block {
         format!("{RUNS}/{}/{}", self.model, self.file())
     }
 
+    /// SHA-256 of its file, as it was written.
+    pub(crate) fn sha256(&self) -> &str {
+        &self.sha256
+    }
+
     /// Whether there is a file of it.
     #[must_use]
     pub fn has_file(&self) -> bool {

@@ -315,7 +315,14 @@ impl fmt::Display for Judgement {
             let all = if_no_more_fail.map(|runs| met(runs, "if all of them keep it"));
             let rate = at_this_rate.filter(|runs| Some(*runs) != if_no_more_fail);
             let rate = rate.map(|runs| met(runs, "if the share that fails stays as it is"));
+            let again = (all.is_some() || rate.is_some()) && self.looks == Looks::Once;
             f.write_str(&(all.unwrap_or_default() + &rate.unwrap_or_default()))?;
+            if again {
+                writeln!(
+                    f,
+                    "  another look a verdict after them is a second look, whose risk the {confidence} do not count: for that, --until"
+                )?;
+            }
         }
         if self.runs_without_number > 0 {
             let runs = self.runs_without_number;

@@ -28,6 +28,8 @@ const APART: f64 = 3.0;
 const CONCENTRATED: f64 = 0.01;
 /// Turns narrower than this, rad², say nothing of the radial variance unless there are two groups.
 const NARROW: f64 = 0.1;
+/// Mean squares of turns, rad², from which on they are told as they are.
+const WIDE: f64 = 0.3;
 /// Mean squares of half tilts below this have no cut at a right angle.
 const NEAR: f64 = 0.005;
 /// 1/(2σ²) of half tilts that are taken for any: the density differs by half of this from end to end.
@@ -66,7 +68,8 @@ pub struct AxesFit {
     /// What the samples say of the axes.
     #[getset(get_copy = "pub")]
     finding: AxesFinding,
-    /// Covariance of small turns about the mean, in rad², in body axes; without the free turns.
+    /// Covariance of turns about the mean, in rad², in body axes, without the free turns: of small ones the parameter of the
+    /// law, from 0.3 rad² on that of the samples.
     #[cfg_attr(feature = "serde", serde(rename = "turn_covariance_rad2"))]
     #[getset(get_copy = "pub")]
     turn_covariance: Matrix3<f64>,
@@ -242,8 +245,7 @@ impl AxesFit {
                 let c = fit.turn_covariance;
                 if c.amax() > 0.0 {
                     fit.mean_covariance = Some(c / n);
-                    let error = |i, j| ((c[(i, i)] * c[(j, j)] + c[(i, j)].powi(2)) / n).sqrt();
-                    fit.turn_errors = Some(Matrix3::from_fn(error));
+                    fit.turn_errors = Some(errors_of(&c, samples.len()));
                 }
                 return Ok(fit);
             }
@@ -267,17 +269,25 @@ impl AxesFit {
             let family = Family::AlignedWith { radial_variance };
             fit = RadiallyConstrainedGaussian::fit_family(&attitudes, family)?;
         }
-        let turn_covariance = fit.turn_covariance();
+        let narrow = fit.turn_covariance();
         let lobes =
             matches!(radial, RadialVariance::Determined { .. } | RadialVariance::Estimated { .. })
-                && turn_covariance.trace() < NARROW;
+                && narrow.trace() < NARROW;
         let share = lobes.then(|| fit.law().far_half_share());
+        // The parameter of a law of wide turns is no deviation of them, and may be any: the turns of the samples are told.
+        let (turn_covariance, turn_errors) = if narrow.trace() < WIDE {
+            (narrow, fit.turn_covariance_errors())
+        } else {
+            let turns = attitudes.iter().map(|q| (fit.law().mean().inverse() * q).scaled_axis());
+            let c = turns.map(|t| t * t.transpose()).sum::<Matrix3<f64>>() / samples.len() as f64;
+            (c, Some(errors_of(&c, samples.len())))
+        };
         // q and −q are one attitude: the mean on the side of the samples' mean.
         Ok(Self {
             law: held_by_entries(fit.law()),
             finding: AxesFinding::Determined,
             turn_covariance,
-            turn_errors: fit.turn_covariance_errors(),
+            turn_errors,
             mean_covariance: fit.mean_covariance(),
             radial: Some(radial),
             converged: fit.convergence().converged,
@@ -300,6 +310,12 @@ impl AxesFit {
     pub(super) fn isotropy(&self) -> Option<f64> {
         self.isotropy
     }
+}
+
+/// Standard errors of the covariance of so many samples of a normal law.
+fn errors_of(c: &Matrix3<f64>, count: usize) -> Matrix3<f64> {
+    let square = |i, j| c[(i, i)] * c[(j, j)] + c[(i, j)] * c[(i, j)];
+    Matrix3::from_fn(|i, j| (square(i, j) / count as f64).sqrt())
 }
 
 /// Mean squares of the turns about the principal axes of a mean, rad², where they are small.

@@ -8,6 +8,7 @@ use super::{
     AxesFinding, PrincipalFit, goodness::bootstrap, names::Names, relabel::Relabeling,
     relabel::Sample,
 };
+use crate::rollup::symmetric::{Matrix6, Six, congruence, mapped};
 
 /// Draws of the law by which the covariances of what is compared are known, to a few per cent; and as many others, which the
 /// samples are compared with.
@@ -25,7 +26,9 @@ const COMPARED: usize = 27;
 struct Rows<'a> {
     fit: &'a PrincipalFit,
     names: Names<'a>,
-    moments: EntryMoments,
+    /// Mean, covariance and deviations of the entries about the mean principal axes.
+    mean: Six,
+    covariance: Matrix6,
     deviations: [f64; 6],
     /// Expectation of p pᵀ and of p, the quaternion from the mean, the scalar part last.
     second: Matrix4<f64>,
@@ -44,25 +47,29 @@ impl<'a> Rows<'a> {
             (unit * back.into_inner()).coords
         }));
         let moments = EntryMoments::of(&fit.law);
+        let axes = congruence(law.mean().to_rotation_matrix().matrix());
+        let covariance = mapped(&axes, moments.covariance());
         Self {
             fit,
             names: fit.names(),
-            deviations: moments.deviations(),
-            moments,
+            mean: axes * Six::from(moments.mean()),
+            covariance,
+            deviations: std::array::from_fn(|e| covariance[(e, e)].max(0.0).sqrt()),
             second: turn * law.second_moment() * turn.transpose(),
             first: turn * law.mean_vector(),
             across: law.expected_forms(),
         }
     }
 
-    /// The six entries in deviations, and the products of two of them.
+    /// The six entries in deviations, and the products of two of them: about the mean principal axes, so that they are the same
+    /// whatever the axes of the body are.
     fn compared(&self, sample: &Sample, row: &mut Vec<f64>) {
-        let r = *sample.attitude.to_rotation_matrix().matrix();
+        let from_mean = sample.attitude * self.fit.axes.law().mean().inverse();
+        let r = *from_mean.to_rotation_matrix().matrix();
         let k = sample.roots.map(|k| k * k);
         let second = r.tr_mul(&(Matrix3::from_diagonal(&Vector3::from(k)) * r));
         let matrix = Matrix3::from_diagonal_element(k.iter().sum()) - second;
-        let (mean, covariance) = (self.moments.mean(), self.moments.covariance());
-        let deviations = self.deviations;
+        let (mean, covariance, deviations) = (self.mean, self.covariance, self.deviations);
         let over = |x: f64, y: f64| if y > 0.0 { x / y } else { 0.0 };
         let z: [f64; 6] =
             std::array::from_fn(|e| over(matrix[ENTRIES[e]] - mean[e], deviations[e]));

@@ -13,6 +13,9 @@ use super::{
     root::RootFit,
 };
 
+/// A column that differs from a sum of others by less than this share of its length is that sum: two roots that are equal
+/// to the digits of tables.
+const SAME_COLUMN: f64 = 1e-4;
 /// Simulated samples at most, and as few as suffice to see this many that look worse.
 const SIMULATED: usize = 999;
 const SIMULATED_IF_MANY: usize = 399;
@@ -358,23 +361,46 @@ fn omnibus(coordinates: &[Vec<f64>]) -> Option<f64> {
     Some(skewness + kurtosis * kurtosis)
 }
 
+/// Those of the columns, of mean zero and length one, that are no sums of those before.
+fn of_full_rank(columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let (mut kept, mut directions) = (Vec::new(), Vec::<Vec<f64>>::new());
+    for column in columns {
+        let mut rest = column.clone();
+        for direction in &directions {
+            let along: f64 = rest.iter().zip(direction).map(|(x, y)| x * y).sum();
+            rest.iter_mut().zip(direction).for_each(|(x, y)| *x -= along * y);
+        }
+        let norm = rest.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if norm > SAME_COLUMN {
+            rest.iter_mut().for_each(|x| *x /= norm);
+            directions.push(rest);
+            kept.push(column);
+        }
+    }
+    kept
+}
+
 /// p-value of no correlation: within `a` if `b` is empty, else between `a` and `b` (Bartlett).
 pub(crate) fn independence(a: &[Vec<f64>], b: &[Vec<f64>], n: usize) -> f64 {
-    let all: Vec<&Vec<f64>> = a.iter().chain(b).collect();
-    let (p, q) = (a.len(), b.len());
     let count = n as f64;
-    let standard: Vec<Vec<f64>> = all
-        .iter()
-        .map(|x| {
-            let mean = x.iter().sum::<f64>() / count;
-            let norm = x.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>().sqrt();
-            x.iter().map(|v| (v - mean) / norm).collect()
-        })
-        .collect();
+    let standard = |x: &Vec<f64>| -> Vec<f64> {
+        let mean = x.iter().sum::<f64>() / count;
+        let norm = x.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>().sqrt();
+        x.iter().map(|v| (v - mean) / norm).collect()
+    };
+    let [a, b] = [a, b].map(|columns| columns.iter().map(standard).collect::<Vec<_>>());
+    // What follows from others tells no more of what these depend on.
+    let a = if b.is_empty() { a } else { of_full_rank(a) };
+    let b = of_full_rank(b);
+    let (p, q) = (a.len(), b.len());
+    let standard: Vec<&Vec<f64>> = a.iter().chain(&b).collect();
     let correlation = DMatrix::from_fn(p + q, p + q, |i, j| {
-        if i == j { 1.0 } else { standard[i].iter().zip(&standard[j]).map(|(x, y)| x * y).sum() }
+        if i == j { 1.0 } else { standard[i].iter().zip(standard[j]).map(|(x, y)| x * y).sum() }
     });
     let whole = correlation.determinant().max(1e-300);
+    if p == 0 {
+        return 1.0;
+    }
     let size = (p + q) as f64;
     let (ratio, factor, freedom) = if b.is_empty() {
         (whole, count - 1.0 - (2.0 * size + 5.0) / 6.0, p * (p - 1) / 2)

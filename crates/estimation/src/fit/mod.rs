@@ -35,8 +35,11 @@ pub use root::{RootEstimate, RootFit};
 const NEEDED: usize = 13;
 /// A second moment below this share of the trace is rounding, and the body a plate.
 const ROUNDING: f64 = 1e-13;
-/// A sample this many times as large as the median of all is no sample of the same body: roots a thousand times as large.
-const LARGER: f64 = 1e6;
+/// A sample this many times as large as the median of all is no sample of the same body: g for kg is a thousand.
+const LARGER: f64 = 500.0;
+/// A root below this share of the size of the body is none, of a rod: with two of these there would be no axes, and no body
+/// that turns. Second moments of 2.5e-9 stand for them.
+const THIN: f64 = 5e-5;
 /// A share of doubtful names that moves the fit and is worth a word.
 const DOUBTFUL: f64 = 0.01;
 /// How often doubtful names are drawn anew at most.
@@ -66,7 +69,7 @@ pub enum PrincipalFitError {
     /// A sample is so large beside the others that the law of all would be about nothing but this one.
     #[error(
         "sample {}: the sum of its moments of inertia is {sum:.3e} kg·m², {:.1e} times the median of the samples; a \
-         fit allows up to {LARGER:.0e} times: the sample has another unit, or a slip of the decimal point",
+         fit allows up to {LARGER} times: the sample has another unit, or a slip of the decimal point",
         index + 1, sum / median
     )]
     Large {
@@ -135,7 +138,7 @@ pub struct Matching {
 ///    [`Inertia::principal_axes`] does.
 ///
 /// # Limits
-/// At least 13 samples, no point among them and none a million times as large as the median. Standard errors are those of
+/// At least 13 samples, no point among them and none 500 times as large as the median. Standard errors are those of
 /// many samples, and suppose that the names are right.
 ///
 /// ```
@@ -243,7 +246,7 @@ impl PrincipalFit {
         let sample_deviations = deviations(&sorted);
         let mut rows: Vec<(usize, Sample)> = order.into_iter().zip(named).collect();
         rows.sort_by_key(|(row, _)| *row);
-        let mean = RootSecondMoments::new(roots.map(|r| r.mean()))
+        let mean = RootSecondMoments::new(mean_roots(&roots))
             .map_err(|_| ScalarRootsError::Variance { axis: 1, value: f64::INFINITY })?;
         let gaussian = ScalarRoots::normal(mean, roots.map(|r| r.deviation() * r.deviation()))?;
         let law = PrincipalDispersion::new(gaussian, axes.law().clone());
@@ -343,10 +346,26 @@ fn fit(samples: Vec<Sample>) -> Result<Fitted, PrincipalFitError> {
     let ln_likelihood = |axes: &_| Names::of(&roots, axes).ln_likelihood(&samples);
     let (axes, height, determined) = AxesFit::of(&samples, &roots, ln_likelihood)?;
     let out_of_range = |_| ScalarRootsError::Variance { axis: 1, value: f64::INFINITY };
-    let mean = SecondMoments::new(roots.map(|r| r.mean() * r.mean())).map_err(out_of_range)?;
+    let mean = SecondMoments::new(mean_roots(&roots).map(|k| k * k)).map_err(out_of_range)?;
     let nominal = Inertia::from_second_moments(mean, &axes.law().mean())
         .map_err(|_| ScalarRootsError::Variance { axis: 1, value: f64::INFINITY })?;
     Ok(Fitted { samples, nominal, roots, axes, height, determined })
+}
+
+/// The mean roots, of which no two are next to nothing.
+fn mean_roots(roots: &[RootFit; 3]) -> [f64; 3] {
+    let means = roots.map(|root| root.mean());
+    let size = roots.iter().map(|root| root.mean().hypot(root.deviation())).fold(0.0, f64::max);
+    let mut thin: Vec<usize> = (0..3).filter(|k| means[*k] < THIN * size).collect();
+    if thin.len() < 2 {
+        return means;
+    }
+    thin.sort_by(|a, b| means[*a].total_cmp(&means[*b]));
+    let mut raised = means;
+    for (rank, k) in thin.into_iter().enumerate() {
+        raised[k] = THIN * size * (1.0 + 0.5 * rank as f64);
+    }
+    raised
 }
 
 /// Where many names are in doubt, the likeliest are too orderly: all scatter that they allow goes out of the fit. So

@@ -40,7 +40,7 @@ pub struct RootFit {
     /// σ, √kg·m; maximum likelihood, so the sum of squares is divided by n.
     deviation: f64,
     /// Standard errors of mean and deviation, √kg·m; none where the likelihood is too flat to have
-    /// them (k̄ = 0) or nothing scatters.
+    /// them (k̄ < σ) or nothing scatters.
     errors: Option<[f64; 2]>,
     /// Which law was fitted.
     law: RootEstimate,
@@ -96,7 +96,7 @@ impl RootFit {
         Self {
             mean,
             deviation: variance.sqrt(),
-            errors: folded_errors(samples, mean, variance),
+            errors: folded_errors(samples, mean, variance).filter(|_| mean * mean >= variance),
             law: RootEstimate::Folded,
         }
     }

@@ -253,6 +253,10 @@ fn of_outcome(model: &StatedModel) -> Vec<StatementWarning> {
     let moments = model.law().roots().second_moment_statistics();
     let (scatter, c) = (moments.variances(), moments.covariance());
     for [m, n] in [[0, 1], [0, 2], [1, 2]] {
+        // A uniform turn is told.
+        if !model.turns()[3 - m - n].is_finite() {
+            continue;
+        }
         if (k[m] - k[n]).abs() < (scatter[m] + scatter[n] - 2.0 * c[(m, n)]).max(0.0).sqrt() {
             warnings.push(StatementWarning::EqualMoments { axes: [m + 1, n + 1] });
         }

@@ -44,8 +44,13 @@ pub(super) struct Scatter {
 
 impl Scatter {
     /// Variances of the rotations about the principal axes, rad², infinite where a turn may be any.
+    /// Two free turns leave the third one free, too.
     pub(super) fn rotation_variances(&self) -> [f64; 3] {
-        self.rotations.diagonal().map(|v| if v < ANY { v } else { f64::INFINITY }).into()
+        let variances = self.rotations.diagonal();
+        match variances.iter().filter(|v| !(**v < ANY)).count() {
+            0 | 1 => variances.map(|v| if v < ANY { v } else { f64::INFINITY }).into(),
+            _ => [f64::INFINITY; 3],
+        }
     }
 }
 

@@ -194,7 +194,7 @@ impl fmt::Display for StatementWarning {
             }
             Self::Correlated => f.write_str(
                 "the second moments are correlated: independent ones cannot have the deviations that \
-                 are stated",
+                 follow from what is stated",
             ),
             Self::Impossible { axis, share } => write!(
                 f,
@@ -260,8 +260,7 @@ impl fmt::Display for StatementWarning {
             ),
             Self::Free { axis } => write!(
                 f,
-                "the turn about principal axis {axis} is taken to be uniform: the products stated allow \
-                 any"
+                "the turn about principal axis {axis} is taken to be uniform: what is stated allows any"
             ),
         }
     }

@@ -119,7 +119,7 @@ impl Joint {
                 } else {
                     "0".to_owned()
                 };
-                writeln!(out, "  {name:<21}{mean:>21}{deviation:>21}        {law}")
+                writeln!(out, "  {name:<21}{mean:>21}  {deviation:>19}        {law}")
             };
         let scalar =
             |fit: &ScalarFit| (fit.mean(), fit.deviation(), fit.errors(), fit.kind().to_string());

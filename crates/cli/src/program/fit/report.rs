@@ -71,7 +71,7 @@ fn write_text(
             RootEstimate::Constant => "0".to_owned(),
             _ => with_error(root.deviation(), errors.map(|e| e[1])),
         };
-        writeln!(out, "  k{}{mean:>38}{deviation:>21}        {}", i + 1, root.law())?;
+        writeln!(out, "  k{}{mean:>38}  {deviation:>19}        {}", i + 1, root.law())?;
     }
     writeln!(out, "\nturn of the principal axes, deg    mean error          deviation")?;
     let axes = fit.axes();
@@ -85,14 +85,14 @@ fn write_text(
             _ => with_error(deviation.to_degrees(), error.map(f64::to_degrees)),
         };
         let mean = mean.map_or_else(|| "-".to_owned(), short);
-        writeln!(out, "  about body axis {}{mean:>24}{turn:>21}", k + 1)?;
+        writeln!(out, "  about body axis {}{mean:>24}  {turn:>19}", k + 1)?;
     }
     writeln!(out, "\nkg·m²          nominal     deviation: samples        fit")?;
     let (nominal, found, law) =
         (fit.nominal().entries(), fit.sample_deviations(), moments.deviations());
     for (e, name) in InertiaMatrix::ENTRY_NAMES.iter().enumerate() {
         let [a, b, c] = [nominal[e], found[e], law[e]].map(short);
-        writeln!(out, "  {name}{a:>17}{b:>22}{c:>11}")?;
+        writeln!(out, "  {name}  {a:>15}  {b:>20}  {c:>9}")?;
     }
 
     if !assessment.tests().is_empty() {
