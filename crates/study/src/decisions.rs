@@ -11,11 +11,13 @@ use gyradius_report::{
 };
 use gyradius_statistics::Verdict;
 
+use std::collections::BTreeSet;
+
 use crate::{
     Ended, Fleet, ScenarioError, StudyError,
     head::{Head, Judged},
     subject::{Subject, Summarized},
-    unusual::{UnusualInput, unusual},
+    unusual::{UnusualInput, moving, unusual},
     where_runs_fail::{self, Asked},
 };
 
@@ -146,7 +148,14 @@ pub(crate) fn judged<C: Subject>(
         let model = runs.model();
         let judged = judging.finish(runs)?;
         let worst = judged.iter().flat_map(Judgement::worst).map(|worst| worst.run).collect();
-        let found = unusual(&scenario.drawn_inputs(summary, model), &worst, runs)?;
+        let drawn = scenario.drawn_inputs(summary, model);
+        let named: BTreeSet<String> = drawn.iter().map(|input| input.column.clone()).collect();
+        let drawn = moving(drawn);
+        let moves = |column: &&String| {
+            !named.contains(*column) || drawn.iter().any(|input| input.column == **column)
+        };
+        let inputs: Vec<String> = inputs.iter().filter(moves).cloned().collect();
+        let found = unusual(&drawn, &worst, runs)?;
         all.extend(judged.into_iter().map(|judgement| {
             let of_run = |run: u64| found.iter().find(|unusual| unusual.run == run).cloned();
             let unusual = judgement.worst().iter().filter_map(|worst| of_run(worst.run)).collect();

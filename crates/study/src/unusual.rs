@@ -2,7 +2,10 @@
 
 use gyradius_campaign::{Runs, RunsError};
 use serde::{Deserialize, Serialize};
-use std::{collections::BTreeSet, sync::Mutex, sync::PoisonError};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::{Mutex, PoisonError},
+};
 
 /// Inputs of a run that are told of, at most.
 const TOLD: usize = 3;
@@ -24,6 +27,25 @@ pub(crate) struct UnusualInput {
     pub(crate) value: f64,
     /// How many standard deviations it lies above the mean of all runs of the model.
     pub(crate) score: f64,
+}
+
+/// A deviation that is a smaller share of the numbers, or of the other entries of an inertia, is rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// The inputs whose deviation is more than rounding.
+pub(crate) fn moving(mut inputs: Vec<DrawnInput>) -> Vec<DrawnInput> {
+    let thing = |column: &str| {
+        let entry =
+            ["i11", "i22", "i33", "i12", "i13", "i23"].iter().find(|e| column.ends_with(**e));
+        entry.map_or(column, |_| &column[..column.len() - 2]).to_owned()
+    };
+    let mut sizes = BTreeMap::<String, f64>::new();
+    for input in &inputs {
+        let size = sizes.entry(thing(&input.column)).or_default();
+        *size = size.max(input.mean.abs() + input.deviation);
+    }
+    inputs.retain(|input| input.deviation > ROUNDING * sizes[&thing(&input.column)]);
+    inputs
 }
 
 /// A number that runs draw, with its mean and standard deviation over the runs.
@@ -76,6 +98,29 @@ mod tests {
     use super::*;
     use gyradius_campaign::{Cell, Column, Table};
     use proptest::prelude::*;
+
+    /// Entries of an inertia are held against each other, other inputs each against itself.
+    #[test]
+    fn rounding_is_no_input() {
+        let all = [
+            ("payload_i11", 5000.0, 40.0),
+            ("payload_i12", 0.0, 8e-15),
+            ("payload_i13", 20.0, 1e-3),
+            ("stage_i11", 1e-9, 1e-10),
+            ("stage_i23", 0.0, 1e-12),
+            ("thrust_1", 1e9, 1e6),
+            ("thrust_2", 0.0, 1e-6),
+            ("still", 12.0, 2e-15),
+        ];
+        let input =
+            |(column, mean, deviation)| DrawnInput::new(column, Some(mean), Some(deviation));
+        let moving = moving(all.into_iter().filter_map(input).collect());
+        let found: Vec<&str> = moving.iter().map(|input| input.column.as_str()).collect();
+        assert_eq!(
+            found,
+            ["payload_i11", "payload_i13", "stage_i11", "stage_i23", "thrust_1", "thrust_2"]
+        );
+    }
 
     proptest! {
         /// Against looking at every number of every run.

@@ -6,7 +6,7 @@ mod section;
 #[cfg(test)]
 mod tests;
 
-use gyradius_campaign::{Measured, Requirement, Runs, RunsError};
+use gyradius_campaign::{Measured, Requirement, Runs, RunsError, varies};
 use gyradius_statistics::{
     Confidence, PairSeparation, QuantileCells, RankCorrelation, Ranks, SuccessByDecile, holm,
     log_likelihood_ratio,
@@ -125,6 +125,8 @@ pub(crate) fn found(runs: &Runs, asked: Asked<'_>) -> Result<Option<WhereRunsFai
     let of_outcomes = rows.numbers(&outcomes)?;
     let ranked: Vec<Ranked<'_>> = of_outcomes.par_iter().map(|y| Ranked::new(y)).collect();
 
+    let moves: Vec<bool> = outcomes.iter().zip(&of_outcomes).map(is_more_than_rounding).collect();
+
     let mut tenths: Vec<Vec<Tenths>> = vec![Vec::new(); judged.len()];
     let mut correlations: Vec<Vec<Correlation>> = vec![Vec::new(); outcomes.len()];
     let mut held = Held::default();
@@ -137,7 +139,8 @@ pub(crate) fn found(runs: &Runs, asked: Asked<'_>) -> Result<Option<WhereRunsFai
             continue;
         }
         let of_inputs: Vec<_> = held.each().map(|(input, x)| (input, Ranked::new(x))).collect();
-        for (outcome, all) in ranked.iter().zip(&mut correlations) {
+        let ranked = ranked.iter().zip(&mut correlations).zip(&moves);
+        for ((outcome, all), _) in ranked.filter(|(_, moves)| **moves) {
             let of = of_inputs.par_iter();
             all.par_extend(of.filter_map(|(input, x)| Correlation::new(input, x, outcome)));
         }
@@ -174,6 +177,16 @@ pub(crate) fn found(runs: &Runs, asked: Asked<'_>) -> Result<Option<WhereRunsFai
     let model = runs.model().to_owned();
     let found = WhereRunsFail { model, runs: there, requirements, rank_correlations };
     Ok((!nothing).then_some(found))
+}
+
+/// Whether an outcome differs between runs by more than rounding, of a degree if it is an angle.
+fn is_more_than_rounding((outcome, numbers): (&Measured, &Vec<f64>)) -> bool {
+    let finite = || numbers.iter().copied().filter(|x| x.is_finite());
+    let scale = if outcome.columns().iter().all(|name| name.ends_with("_deg")) { 1.0 } else { 0.0 };
+    finite()
+        .reduce(f64::min)
+        .zip(finite().reduce(f64::max))
+        .is_some_and(|(a, b)| varies(a, b, scale))
 }
 
 /// The quantities of the requirements, each once, or the main outcomes without any.

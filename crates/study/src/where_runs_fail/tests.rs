@@ -322,6 +322,57 @@ fn nothing_is_told_without_requirements_or_failures() {
     assert_eq!(page(&[]), Document::new("t", "h", "l").markdown());
 }
 
+/// An outcome that is constant but for rounding goes with no input, however well the rounding does.
+#[test]
+fn rounding_of_an_outcome_goes_with_nothing() {
+    let mut rows = made(1, 200, 3, |x| x[0] > 0.8);
+    for (x, y, _) in &mut rows {
+        *y = x[0].map(|x| 7.5 + 1e-14 * x);
+    }
+    let inputs = names(3);
+    let main = ["y".to_owned()];
+    let runs = Runs::from(table(&rows));
+    assert_eq!(found(&runs, Asked { main: &main, ..asked(&[], &inputs, 1) }).unwrap(), None);
+}
+
+/// Of a body with fixed axes and no products these are rounding in every run, and no inputs.
+#[test]
+fn products_that_do_not_scatter_are_no_inputs() {
+    let text = r#"
+        name = "fixed"
+        runs = 300
+        [payload]
+        mass_kg = 800.0
+        inertia_kg_m2 = [[240.0, 2.4, 0.0], [2.4, 400.0, 0.0], [0.0, 0.0, 410.0]]
+        position_m = [0.0, 0.0, 1.0]
+        [payload.dispersion]
+        root_second_moment_variance_kg_m2 = [0.03, 0.03, 0.01]
+        axes = "fixed"
+        [stage]
+        mass_kg = 90.0
+        inertia_kg_m2 = [[40.0, 0.3, 0.0], [0.3, 45.0, 0.0], [0.0, 0.0, 46.0]]
+        position_m = [0.0, 0.0, -1.0]
+        [stage.dispersion]
+        root_second_moment_variance_kg_m2 = [0.002, 0.002, 0.001]
+        axes = "fixed"
+        [[springs]]
+        stiffness_n_per_m = 9000.0
+        stroke_m = 0.1
+        payload_point_m = [0.5, 0.4, -0.9]
+        stage_point_m = [0.5, 0.4, 0.9]
+        [[models]]
+        name = "own"
+        law = "principal"
+        axes = "whole-sphere"
+    "#;
+    let scenario = Scenario::from_toml(text).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let options = Options::to(folder.path().join("out"));
+    let study = Study::run(&scenario, &options, &|_| {}).unwrap();
+    let told = serde_json::to_string(&study.summary().head.where_runs_fail).unwrap();
+    assert!(told.contains("payload_i11") && !told.contains("payload_i13"), "{told}");
+}
+
 /// A study writes it, and the report made again from its folder is the same.
 #[test]
 fn a_study_tells_where_its_runs_fail() {
