@@ -269,14 +269,14 @@ impl AxesFit {
             let family = Family::AlignedWith { radial_variance };
             fit = RadiallyConstrainedGaussian::fit_family(&attitudes, family)?;
         }
-        let narrow = fit.turn_covariance();
+        let parameter = fit.turn_covariance();
         let lobes =
             matches!(radial, RadialVariance::Determined { .. } | RadialVariance::Estimated { .. })
-                && narrow.trace() < NARROW;
+                && parameter.trace() < NARROW;
         let share = lobes.then(|| fit.law().far_half_share());
         // The parameter of a law of wide turns is no deviation of them, and may be any: the turns of the samples are told.
-        let (turn_covariance, turn_errors) = if narrow.trace() < WIDE {
-            (narrow, fit.turn_covariance_errors())
+        let (turn_covariance, turn_errors) = if parameter.trace() < WIDE {
+            (parameter, fit.turn_covariance_errors())
         } else {
             let turns = attitudes.iter().map(|q| (fit.law().mean().inverse() * q).scaled_axis());
             let c = turns.map(|t| t * t.transpose()).sum::<Matrix3<f64>>() / samples.len() as f64;
@@ -334,7 +334,7 @@ fn products_of_turns(samples: &[Sample], mean: &UnitQuaternion<f64>) -> Matrix3<
 /// axis points anywhere.
 fn tilt_variance(squares: &[f64]) -> f64 {
     let n = squares.len() as f64;
-    // In λ = 1/(2σ²), which is the mean of 1/u where it is large. Positive below the solution, negative above it.
+    // In λ = 1/(2σ²): where it is large, 1/λ is the mean of u. Positive below the solution, negative above it.
     let excess = |lambda: f64| {
         let mean = squares.iter().map(|u| (0.5 - u) * libm::tanh((0.5 - u) * lambda)).sum::<f64>();
         mean / n - (0.5 / libm::tanh(0.5 * lambda) - 1.0 / lambda)
