@@ -2,18 +2,17 @@
 
 use gyradius_attitude::{Family, FitError, RadialVariance, RadiallyConstrainedGaussian};
 use gyradius_statistics::tail;
-use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::{
     matching::{mean_attitude, vector_part},
     relabel::Sample,
     root::RootFit,
     round::{direction, mean_about, round_axes},
+    uniformity::undetermined,
 };
 use crate::turns::{FIXED, held_by_entries, law_of_turns, law_of_turns_about};
 
-/// Uniform angles are taken for not uniform this often.
-const SIZE: f64 = 0.01;
 /// By how much the ln-likelihood of a law with one free turn must exceed that of uniform axes: half of what χ² exceeds at
 /// 1 % with 5 degrees of freedom, as it is the largest over all directions of a tensor with 5 components.
 const LESS_FREE: f64 = 7.543;
@@ -22,8 +21,6 @@ const LESS_FREE: f64 = 7.543;
 const DETERMINED: f64 = 11.605;
 /// That is exceeded as rarely in few samples if it grows by this over their number: simulated, 30 to 300 of them.
 const FEW: f64 = 20.0;
-/// Moments this many deviations apart are never taken for each other.
-const APART: f64 = 3.0;
 /// Below this radial variance there is no second lobe, and narrow laws are all the same.
 const CONCENTRATED: f64 = 0.01;
 /// Turns narrower than this, rad², say nothing of the radial variance unless there are two groups.
@@ -109,11 +106,11 @@ impl AxesFit {
         let determined = Self::determined(samples, mean)?;
         let asked = DETERMINED * (1.0 + FEW / samples.len() as f64);
         let told = ln_likelihood(&determined.law) - LESS_FREE - asked;
-        let free = undetermined(samples, roots, &mean).into_iter().map(|finding| {
-            let (fit, less_free) = match finding {
-                AxesFinding::FreeTurn { axis } => (Self::about(samples, axis - 1), LESS_FREE),
-                _ => (Self::plain(mean, [f64::INFINITY; 3], AxesFinding::Free), 0.0),
-            };
+        let (any, about) = undetermined(samples, roots, &mean);
+        let any = any.then(|| Self::plain(mean, [f64::INFINITY; 3], AxesFinding::Free));
+        let about = (0..3).filter(|axis| about[*axis]).map(|axis| Self::about(samples, axis));
+        let free = any.into_iter().map(|fit| (fit, 0.0)).chain(about.map(|fit| (fit, LESS_FREE)));
+        let free = free.map(|(fit, less_free)| {
             let height = ln_likelihood(&fit.law) - less_free;
             (fit, height)
         });
@@ -354,119 +351,11 @@ fn tilt_variance(squares: &[f64]) -> f64 {
     0.5 / low
 }
 
-/// Which angles of the axes the samples may leave undetermined: by tests of uniformity that do not
-/// depend on how axes of equal moments are named, at 1 %.
-fn undetermined(
-    samples: &[Sample],
-    roots: &[RootFit; 3],
-    mean: &UnitQuaternion<f64>,
-) -> Vec<AxesFinding> {
-    let n = samples.len() as f64;
-    // Axis k is the odd one of the pair that remains.
-    let apart: [bool; 3] = std::array::from_fn(|k| {
-        let (a, b) = (roots[(k + 1) % 3], roots[(k + 2) % 3]);
-        (a.mean() - b.mean()).abs() > APART * a.deviation().hypot(b.deviation())
-    });
-    let round = round_axes(samples);
-    if round.iter().filter(|round| **round).count() > 1 {
-        return vec![AxesFinding::Free];
-    }
-    let mut findings = Vec::new();
-    if uniform_p_value(samples, apart) > SIZE {
-        findings.push(AxesFinding::Free);
-    }
-    for (axis, apart) in apart.into_iter().enumerate() {
-        if round[axis] {
-            findings.push(AxesFinding::FreeTurn { axis: axis + 1 });
-        }
-        if round.contains(&true) {
-            continue;
-        }
-        // Named by moment, an axis is known but for its sign; else up to quarter turns.
-        let fold = if apart { 2.0 } else { 4.0 };
-        let (mut c, mut s) = (0.0, 0.0);
-        for sample in samples {
-            let p = sample.attitude * mean.inverse();
-            let angle = 2.0 * libm::atan2(p.imag()[axis], p.w);
-            let (sin, cos) = libm::sincos(fold * angle);
-            c += cos / n;
-            s += sin / n;
-        }
-        if tail::rayleigh(libm::hypot(c, s), n) > SIZE {
-            findings.push(AxesFinding::FreeTurn { axis: axis + 1 });
-        }
-    }
-    findings
-}
-
-/// p-value of uniform axes, from tensors that change with no naming of the axes that could be
-/// confused: Σ a_k aₖᵀ of each axis that is known by its moment, Σ_k a_k⊗a_k⊗a_k⊗a_k if none is.
-fn uniform_p_value(samples: &[Sample], apart: [bool; 3]) -> f64 {
-    let n = samples.len() as f64;
-    let axes = |s: &Sample| *s.attitude.to_rotation_matrix().matrix();
-    let known = apart.iter().filter(|a| **a).count();
-    if known == 0 {
-        // Harmonics of degree four: 9 components, of variance 2/15 each.
-        let mut sum = SMatrix::<f64, 9, 9>::zeros();
-        for s in samples {
-            let r = axes(s);
-            for k in 0..3 {
-                let a: Vector3<f64> = r.row(k).transpose();
-                let square = SMatrix::<f64, 9, 1>::from_fn(|i, _| a[i / 3] * a[i % 3]);
-                sum += square * square.transpose() / n;
-            }
-        }
-        return tail::chi_squared(n * (sum.norm_squared() - 9.0 / 5.0) * 7.5, 9.0);
-    }
-    let mut tensors = [-Matrix3::identity() / 3.0; 3];
-    for s in samples {
-        let r = axes(s);
-        for (k, tensor) in tensors.iter_mut().enumerate() {
-            let a: Vector3<f64> = r.row(k).transpose();
-            *tensor += a * a.transpose() / n;
-        }
-    }
-    if known == 3 {
-        let [q1, q2, q3] = tensors;
-        let statistic = (q1 - q2).norm_squared() * 2.5 + q3.norm_squared() * 7.5;
-        return tail::chi_squared(n * statistic, 10.0);
-    }
-    // One pair cannot be told apart: the third axis can. With two such pairs, none can.
-    let pairs: Vec<usize> = (0..3).filter(|k| !apart[*k]).collect();
-    match pairs[..] {
-        [axis] => tail::chi_squared(n * tensors[axis].norm_squared() * 7.5, 5.0),
-        _ => uniform_p_value(samples, [false; 3]),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gyradius_attitude::UniformAttitude;
     use rand::RngExt;
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-    use rand_distr::Distribution;
-
-    /// The test of uniform axes rejects uniform axes as often as it says.
-    #[test]
-    fn uniformity_has_its_size() {
-        let mut rng = ChaCha8Rng::seed_from_u64(2);
-        let mut rejected = [0; 3];
-        const REPEATS: usize = 2000;
-        for _ in 0..REPEATS {
-            let samples: Vec<Sample> = (0..100)
-                .map(|_| Sample { roots: [1.0; 3], attitude: UniformAttitude.sample(&mut rng) })
-                .collect();
-            let cases = [[false; 3], [true; 3], [true, true, false]];
-            for (count, apart) in rejected.iter_mut().zip(cases) {
-                *count += usize::from(uniform_p_value(&samples, apart) < 0.05);
-            }
-        }
-        for count in rejected {
-            // 5 % ± 4 deviations, and a little for n = 100.
-            assert!((60..=145).contains(&count), "{rejected:?}");
-        }
-    }
 
     /// Turns with an upper limit, as of a tolerance, have lighter tails than the law of the axes. The deviations told are
     /// those of the samples all the same.

@@ -11,6 +11,7 @@ mod root;
 mod round;
 #[cfg(test)]
 mod tests;
+mod uniformity;
 
 use gyradius_attitude::{FitError, RadiallyConstrainedGaussian};
 use gyradius_dispersion::{PrincipalDispersion, ScalarRoots, ScalarRootsError};
