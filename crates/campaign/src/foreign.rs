@@ -127,28 +127,35 @@ impl ForeignTable {
 
     /// That it holds the rows of all runs, as they were written, as far as it is known.
     pub(crate) fn check_rows(&self) -> Result<(), RowsError> {
-        let Some(origin) = &self.origin else { return Ok(()) };
-        let error = |problem| {
-            let (path, campaign) = (self.path.clone(), origin.manifest.clone());
-            Err(RowsError { path, campaign, problem })
-        };
-        if !origin.rows.is_all() {
-            return error(RowsProblem::Kept { rows: origin.rows });
-        }
-        let damaged = match origin.damaged() {
-            Ok(damaged) => damaged,
-            Err(unread) => return error(RowsProblem::Unread { problem: unread.to_string() }),
-        };
-        if let Some(first) = damaged.first() {
-            let (first, count) = (first.clone(), damaged.len());
-            return error(RowsProblem::Damaged { first, count, of: origin.files.len() });
-        }
-        // What it says nothing of may be the same runs again.
-        let known = |file: &&PathBuf| {
-            origin.files.iter().any(|(known, _)| known.file_name() == file.file_name())
-        };
-        match self.files.iter().find(|file| !known(file)) {
-            Some(file) => error(RowsProblem::Unknown { file: file.clone() }),
+        self.check(|origin| {
+            if !origin.rows.is_all() {
+                return Some(RowsProblem::Kept { rows: origin.rows });
+            }
+            match origin.damaged() {
+                Ok(damaged) => damaged.first().map(|first| RowsProblem::Damaged {
+                    first: first.clone(),
+                    count: damaged.len(),
+                    of: origin.blocks.len(),
+                }),
+                Err(unread) => Some(RowsProblem::Unread { problem: unread.to_string() }),
+            }
+        })
+    }
+
+    /// That it has no other rows than those of the study whose folder it is in.
+    pub(crate) fn check_files(&self) -> Result<(), RowsError> {
+        self.check(|origin| {
+            let other = self.files.iter().find(|file| !origin.has(file));
+            other.map(|file| RowsProblem::Unknown { file: file.clone() })
+        })
+    }
+
+    fn check(&self, problem: impl FnOnce(&Origin) -> Option<RowsProblem>) -> Result<(), RowsError> {
+        match self.origin.as_ref().and_then(|origin| Some((origin, problem(origin)?))) {
+            Some((origin, problem)) => {
+                let (path, campaign) = (self.path.clone(), origin.manifest.clone());
+                Err(RowsError { path, campaign, problem })
+            }
             None => Ok(()),
         }
     }
@@ -286,14 +293,16 @@ enum RowsProblem {
     Kept { rows: Rows },
     /// Blocks that are gone, or whose content is another.
     #[error(
-        "its runs are in {of} files, and of these {count} are gone or not as they were written, the first being {}: the command that made \
-         the study does these runs again",
+        "{count} of its {of} files {} gone or not as {} written, {}{}: the command that made the study does these runs again",
+        if *count == 1 { "is" } else { "are" },
+        if *count == 1 { "it was" } else { "they were" },
+        if *count == 1 { "" } else { "the first being " },
         first.display()
     )]
     Damaged { first: PathBuf, count: usize, of: usize },
     /// A file that is none of the study's.
     #[error("{} is none of its files: move it elsewhere", file.display())]
     Unknown { file: PathBuf },
-    #[error("its files are the runs, and one cannot be read: {problem}")]
+    #[error("its runs are in files of which one cannot be read: {problem}")]
     Unread { problem: String },
 }

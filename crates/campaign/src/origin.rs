@@ -5,11 +5,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use rayon::prelude::*;
-
 use crate::{
-    folder::{MANIFEST, Manifest, RUNS},
-    hash::sha256_of_file,
+    folder::{Block, MANIFEST, Manifest, RUNS, damaged},
     kept::Rows,
     requirement::Counting,
 };
@@ -22,21 +19,21 @@ pub(crate) struct Origin {
     pub(crate) counting: Counting,
     /// The rows that were kept of the runs.
     pub(crate) rows: Rows,
-    /// The files of the table, as it says: where they are, and their SHA-256.
-    pub(crate) files: Vec<(PathBuf, String)>,
+    /// The folder of the campaign.
+    folder: PathBuf,
+    /// The blocks of the table, as it says.
+    pub(crate) blocks: Vec<Block>,
 }
 
 impl Origin {
     /// The files of the table that are gone or not as they were written.
     pub(crate) fn damaged(&self) -> io::Result<Vec<PathBuf>> {
-        let is_damaged = |(file, hash): &&(PathBuf, String)| match sha256_of_file(file) {
-            Ok(found) => Ok(found != *hash),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(true),
-            Err(error) => Err(error),
-        };
-        let files = self.files.par_iter();
-        let found = files.map(|file| Ok(is_damaged(&file)?.then(|| file.0.clone())));
-        Ok(found.collect::<io::Result<Vec<_>>>()?.into_iter().flatten().collect())
+        Ok(damaged(&self.folder, &self.blocks)?.iter().map(|name| self.folder.join(name)).collect())
+    }
+
+    /// Whether a file of the table is one that it tells of.
+    pub(crate) fn has(&self, file: &Path) -> bool {
+        self.blocks.iter().any(|block| Path::new(&block.name()).file_name() == file.file_name())
     }
 
     /// Of a file in `runs/MODEL` of a campaign's folder, or of that folder of the model; none elsewhere.
@@ -67,10 +64,10 @@ impl Origin {
         // The table is the folder of a model, or one file in it.
         let end = |up: usize| whole.ancestors().nth(up).and_then(Path::file_name);
         let model = end(up - 1).and_then(|name| name.to_str()).unwrap_or_default();
-        let of_table = |file: &PathBuf| up == 1 || file.file_name() == end(0);
-        let blocks = read.blocks_of(model).into_iter().filter(|block| block.has_file());
-        let files = blocks.map(|block| (folder.join(block.name()), block.sha256().to_owned()));
-        let files = files.filter(|(file, _)| of_table(file)).collect();
-        Ok(Some(Self { manifest, counting, rows, files }))
+        let of_table = |block: &&Block| {
+            block.has_file() && (up == 1 || Path::new(&block.name()).file_name() == end(0))
+        };
+        let blocks = read.blocks_of(model).into_iter().filter(of_table).cloned().collect();
+        Ok(Some(Self { manifest, counting, rows, folder: folder.to_owned(), blocks }))
     }
 }

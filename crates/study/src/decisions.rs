@@ -11,13 +11,11 @@ use gyradius_report::{
 };
 use gyradius_statistics::Verdict;
 
-use std::collections::BTreeSet;
-
 use crate::{
     Ended, Fleet, ScenarioError, StudyError,
     head::{Head, Judged},
     subject::{Subject, Summarized},
-    unusual::{UnusualInput, moving, unusual},
+    unusual::{UnusualInput, unusual, without_rounding},
     where_runs_fail::{self, Asked},
 };
 
@@ -148,12 +146,8 @@ pub(crate) fn judged<C: Subject>(
         let model = runs.model();
         let judged = judging.finish(runs)?;
         let worst = judged.iter().flat_map(Judgement::worst).map(|worst| worst.run).collect();
-        let drawn = scenario.drawn_inputs(summary, model);
-        let named: BTreeSet<String> = drawn.iter().map(|input| input.column.clone()).collect();
-        let drawn = moving(drawn);
-        let moves = |column: &&String| {
-            !named.contains(*column) || drawn.iter().any(|input| input.column == **column)
-        };
+        let (drawn, rounding) = without_rounding(scenario.drawn_inputs(summary, model));
+        let moves = |column: &&String| !rounding.iter().any(|input| input.column == **column);
         let inputs: Vec<String> = inputs.iter().filter(moves).cloned().collect();
         let found = unusual(&drawn, &worst, runs)?;
         all.extend(judged.into_iter().map(|judgement| {
@@ -434,9 +428,10 @@ fn verdict(judged: &Judged) -> PageCell {
             };
             let all = if_no_more_fail.map(|runs| more(runs, "if all keep it"));
             let rate = at_this_rate.map(|runs| more(runs, "if failures go on at this rate"));
-            let again = (if_no_more_fail.or(at_this_rate).is_some()
-                && judgement.looks() == Looks::Once)
-                .then(|| Text::default().quiet("a second look takes a second risk: see --until"));
+            let again = judgement.asks_for_another_look().then(|| {
+                let said = "judging a second time adds a risk of its own; --until counts all looks";
+                Text::default().quiet(said)
+            });
             all.into_iter().chain(rate).chain(again).fold(cell, PageCell::line)
         }
     }

@@ -46,7 +46,13 @@ macro_rules! quantities {
             Release(LoadId),
         }
 
-        impl Quantity {
+        /// How large a value is that rounding is measured by, whatever the values of this unit are: a degree of angles, which may be
+/// zero but for rounding, and nothing else.
+pub(crate) fn scale_of(unit: &str) -> f64 {
+    if unit == "deg" { 1.0 } else { 0.0 }
+}
+
+impl Quantity {
             /// All but those of single loads, in the order of the run table.
             pub const ALL: &'static [Self] = &[$(Self::$name),+];
 
@@ -308,10 +314,9 @@ impl Quantity {
         self.declaration().unit
     }
 
-    /// How large a value is that rounding is measured by, whatever the values are: a degree of angles, which may be zero but for
-    /// rounding, and nothing else.
+    /// As [`scale_of`] says of its unit.
     pub(crate) fn scale(self) -> f64 {
-        if self.unit() == "deg" { 1.0 } else { 0.0 }
+        scale_of(self.unit())
     }
 
     /// Whether its values differ by more than rounding.

@@ -1,6 +1,7 @@
 //! What is unusual among what the worst runs have drawn.
 
 use gyradius_campaign::{Runs, RunsError};
+use gyradius_dispersion::TenParameters;
 use serde::{Deserialize, Serialize};
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -32,20 +33,20 @@ pub(crate) struct UnusualInput {
 /// A deviation that is a smaller share of the numbers, or of the other entries of an inertia, is rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// The inputs whose deviation is more than rounding.
-pub(crate) fn moving(mut inputs: Vec<DrawnInput>) -> Vec<DrawnInput> {
-    let thing = |column: &str| {
-        let entry =
-            ["i11", "i22", "i33", "i12", "i13", "i23"].iter().find(|e| column.ends_with(**e));
-        entry.map_or(column, |_| &column[..column.len() - 2]).to_owned()
+/// The inputs whose deviation is more than rounding, and those of which it is rounding alone: of an entry of an inertia,
+/// beside the largest of the six.
+pub(crate) fn without_rounding(inputs: Vec<DrawnInput>) -> (Vec<DrawnInput>, Vec<DrawnInput>) {
+    let whole = |column: &str| {
+        let entry = TenParameters::COLUMNS[4..].iter().find_map(|e| column.strip_suffix(e));
+        entry.unwrap_or(column).to_owned()
     };
     let mut sizes = BTreeMap::<String, f64>::new();
     for input in &inputs {
-        let size = sizes.entry(thing(&input.column)).or_default();
+        let size = sizes.entry(whole(&input.column)).or_default();
         *size = size.max(input.mean.abs() + input.deviation);
     }
-    inputs.retain(|input| input.deviation > ROUNDING * sizes[&thing(&input.column)]);
-    inputs
+    let moves = |input: &DrawnInput| input.deviation > ROUNDING * sizes[&whole(&input.column)];
+    inputs.into_iter().partition(moves)
 }
 
 /// A number that runs draw, with its mean and standard deviation over the runs.
@@ -114,7 +115,8 @@ mod tests {
         ];
         let input =
             |(column, mean, deviation)| DrawnInput::new(column, Some(mean), Some(deviation));
-        let moving = moving(all.into_iter().filter_map(input).collect());
+        let (moving, rounding) = without_rounding(all.into_iter().filter_map(input).collect());
+        assert_eq!(moving.len() + rounding.len(), all.len());
         let found: Vec<&str> = moving.iter().map(|input| input.column.as_str()).collect();
         assert_eq!(
             found,

@@ -1,18 +1,14 @@
 //! Blocks of a complete campaign put in their places: whole, or those rows and columns of them that are kept.
 
 use rayon::prelude::*;
-use std::{
-    io::{self, Write},
-    path::PathBuf,
-    sync::atomic::AtomicBool,
-};
+use std::{io::Write, path::PathBuf, sync::atomic::AtomicBool};
 
 use super::{
     Folder, FolderError, Problem,
     blocks::Blocks,
     hidden::Hidden,
-    manifest::{Block, MANIFEST, Manifest},
-    name::{Found, Name, look},
+    manifest::{Block, MANIFEST, Manifest, damaged},
+    name::Name,
     shared::Shared,
     told::{manifest, published},
 };
@@ -163,17 +159,8 @@ impl Reduced {
     /// # Errors
     /// The folder cannot be read.
     pub fn damaged(&self) -> Result<Vec<String>, FolderError> {
-        let with_file = self.blocks.par_iter().filter(|block| block.has_file());
-        let damaged = with_file.map(|block| {
-            let Ok(name) = Name::new(&block.name()) else { return Ok(Some(block.name())) };
-            let whole =
-                matches!(look(&self.place, &name)?, Found::File { hash } if hash == block.sha256);
-            Ok((!whole).then(|| block.name()))
-        });
-        let damaged = damaged.collect::<io::Result<Vec<Option<String>>>>();
-        let damaged =
-            damaged.map_err(|e| FolderError { path: self.place.clone(), problem: e.into() })?;
-        Ok(damaged.into_iter().flatten().collect())
+        damaged(&self.place, &self.blocks)
+            .map_err(|e| FolderError { path: self.place.clone(), problem: e.into() })
     }
 }
 

@@ -1,9 +1,13 @@
 //! What a complete campaign tells of itself: what it is, its columns, its blocks.
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::{io, ops::Range, path::Path};
 
-use super::{disk, name::Name};
+use super::{
+    disk,
+    name::{Found, Name, look},
+};
 use crate::{
     column::{Column, ColumnSummary},
     identity::Identity,
@@ -136,11 +140,6 @@ impl Block {
         format!("{RUNS}/{}/{}", self.model, self.file())
     }
 
-    /// SHA-256 of its file, as it was written.
-    pub(crate) fn sha256(&self) -> &str {
-        &self.sha256
-    }
-
     /// Whether there is a file of it.
     #[must_use]
     pub fn has_file(&self) -> bool {
@@ -220,6 +219,17 @@ impl Manifest {
     pub fn identity(&self) -> &Identity {
         &self.identity
     }
+}
+
+/// The files of blocks of a folder that are gone or not as they were written; to be called in the threads that are to look.
+pub(crate) fn damaged(place: &Path, blocks: &[Block]) -> io::Result<Vec<String>> {
+    let with_file = blocks.par_iter().filter(|block| block.has_file());
+    let damaged = with_file.map(|block| {
+        let Ok(name) = Name::new(&block.name()) else { return Ok(Some(block.name())) };
+        let whole = matches!(look(place, &name)?, Found::File { hash } if hash == block.sha256);
+        Ok((!whole).then(|| block.name()))
+    });
+    Ok(damaged.collect::<io::Result<Vec<Option<String>>>>()?.into_iter().flatten().collect())
 }
 
 pub(crate) fn is_zero(count: &u64) -> bool {

@@ -35,7 +35,7 @@ pub use blocks::Blocks;
 use hidden::Hidden;
 use journal::{Journal, Left, Replacement};
 pub use manifest::{Block, MANIFEST, Manifest};
-pub(crate) use manifest::{RUNS, is_zero};
+pub(crate) use manifest::{RUNS, damaged, is_zero};
 pub use name::HIDDEN;
 use name::{Found, Name, look};
 use record::Record;

@@ -153,6 +153,18 @@ impl Judgement {
         self.runs
     }
 
+    /// Whether it tells of more runs that would show that the requirement is met, though the verdict holds for one look.
+    #[must_use]
+    pub fn asks_for_another_look(&self) -> bool {
+        let more = match self.verdict {
+            Verdict::Undecided { if_no_more_fail, at_this_rate } => {
+                if_no_more_fail.or(at_this_rate).is_some()
+            }
+            Verdict::Met | Verdict::NotMet => false,
+        };
+        more && self.looks == Looks::Once
+    }
+
     /// How often the runs were looked at: verdict, interval and bound hold for all looks.
     #[must_use]
     pub fn looks(&self) -> Looks {
@@ -315,12 +327,11 @@ impl fmt::Display for Judgement {
             let all = if_no_more_fail.map(|runs| met(runs, "if all of them keep it"));
             let rate = at_this_rate.filter(|runs| Some(*runs) != if_no_more_fail);
             let rate = rate.map(|runs| met(runs, "if the share that fails stays as it is"));
-            let again = (all.is_some() || rate.is_some()) && self.looks == Looks::Once;
             f.write_str(&(all.unwrap_or_default() + &rate.unwrap_or_default()))?;
-            if again {
+            if self.asks_for_another_look() {
                 writeln!(
                     f,
-                    "  another look a verdict after them is a second look, whose risk the {confidence} do not count: for that, --until"
+                    "  again        judging a second time adds a risk of its own; a study with --until counts all looks"
                 )?;
             }
         }

@@ -29,8 +29,9 @@ impl Judgement {
         requirements: &[Requirement],
         table: &ForeignTable,
     ) -> Result<Vec<Self>, JudgementError> {
-        table.twice()?.map_or(Ok(()), Err)?;
         table.check_rows()?;
+        table.twice()?.map_or(Ok(()), Err)?;
+        table.check_files()?;
         let mut names: Vec<String> = Vec::new();
         for name in requirements.iter().flat_map(|requirement| requirement.quantity().columns()) {
             if !names.contains(name) {

@@ -8,7 +8,7 @@ use super::{
     matching::{mean_attitude, vector_part},
     relabel::Sample,
     root::RootFit,
-    round::{direction, mean_about, round_axes},
+    round::{Roundness, direction, direction_near, mean_about},
     uniformity::undetermined,
 };
 use crate::turns::{FIXED, held_by_entries, law_of_turns, law_of_turns_about};
@@ -106,9 +106,11 @@ impl AxesFit {
         let determined = Self::determined(samples, mean)?;
         let asked = DETERMINED * (1.0 + FEW / samples.len() as f64);
         let told = ln_likelihood(&determined.law) - LESS_FREE - asked;
-        let (any, about) = undetermined(samples, roots, &mean);
+        let round = Roundness::of(samples);
+        let (any, about) = undetermined(samples, roots, &mean, round);
         let any = any.then(|| Self::plain(mean, [f64::INFINITY; 3], AxesFinding::Free));
-        let about = (0..3).filter(|axis| about[*axis]).map(|axis| Self::about(samples, axis));
+        let about =
+            (0..3).filter(|axis| about[*axis]).map(|axis| Self::about(samples, &mean, axis));
         let free = any.into_iter().map(|fit| (fit, 0.0)).chain(about.map(|fit| (fit, LESS_FREE)));
         let free = free.map(|(fit, less_free)| {
             let height = ln_likelihood(&fit.law) - less_free;
@@ -120,7 +122,7 @@ impl AxesFit {
         };
         // Samples with two equal moments have no turn about the third axis: only their tilts have a law, which those of a
         // free turn hold where they are wide.
-        if round_axes(samples).contains(&true) {
+        if round != Roundness::No {
             let fit = if determined.turn_covariance.trace() < NARROW { determined } else { free };
             let widest = fit.law.clone();
             return Ok((fit, height, widest));
@@ -195,9 +197,9 @@ impl AxesFit {
 
     /// One axis has a direction. With its tilt t = (t_a, t_b), half turns, and the free angle taken
     /// out, |t|² has the density ∝ exp(−|t|²/(2σ²)) on [0, 1].
-    fn about(samples: &[Sample], axis: usize) -> Self {
+    fn about(samples: &[Sample], mean: &UnitQuaternion<f64>, axis: usize) -> Self {
         let n = samples.len() as f64;
-        let mean = mean_about(samples, axis);
+        let mean = mean_about(samples, mean, axis);
         let mean_axis = direction(&mean, axis);
         // |t|² = sin² of half the tilt, up to a right angle: which end of the axis is which, nobody knows.
         let squares: Vec<f64> = samples
@@ -216,9 +218,7 @@ impl AxesFit {
         // The tilts in the body, along the other two axes of the mean.
         let (mut aa, mut ab, mut bb) = (0.0, 0.0, 0.0);
         for s in samples {
-            let a = direction(&s.attitude, axis);
-            let a = a * 1.0_f64.copysign(a.dot(&mean_axis));
-            let p = r * a;
+            let p = r * direction_near(&mean_axis, &s.attitude, axis);
             let (x, y) = (p[(axis + 1) % 3], p[(axis + 2) % 3]);
             aa += x * x;
             ab += x * y;
@@ -237,11 +237,10 @@ impl AxesFit {
             Err(FitError::Degenerate { .. }) => {
                 let r = *mean.to_rotation_matrix().matrix();
                 let covariance = r.tr_mul(&(products_of_turns(samples, &mean) * r));
-                let n = samples.len() as f64;
                 let mut fit = Self::still(covariance, mean);
                 let c = fit.turn_covariance;
                 if c.amax() > 0.0 {
-                    fit.mean_covariance = Some(c / n);
+                    fit.mean_covariance = Some(c / samples.len() as f64);
                     fit.turn_errors = Some(errors_of(&c, samples.len()));
                 }
                 return Ok(fit);

@@ -5,8 +5,11 @@ use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Vector3, Vector4};
 use rand::{Rng, RngExt};
 
 use super::{
-    AxesFinding, PrincipalFit, goodness::bootstrap, names::Names, relabel::Relabeling,
-    relabel::Sample,
+    AxesFinding, PrincipalFit,
+    goodness::bootstrap,
+    names::Names,
+    relabel::{Relabeling, Sample},
+    round::direction,
 };
 use crate::rollup::symmetric::{Matrix6, Six, congruence, mapped};
 
@@ -111,7 +114,7 @@ impl<'a> Rows<'a> {
             match self.fit.axes.finding() {
                 AxesFinding::Free | AxesFinding::Still => {}
                 AxesFinding::FreeTurn { axis } => {
-                    let a = named.attitude.inverse() * Vector3::ith(axis - 1, 1.0);
+                    let a = direction(&named.attitude, axis - 1);
                     let across = Matrix3::identity() - a * a.transpose();
                     for (e, entry) in ENTRIES.iter().enumerate() {
                         sums[e] += share * (across[*entry] - self.across[axis - 1][e]);

@@ -1,7 +1,7 @@
 //! Whether samples look like draws of the model that was fitted to them.
 
 use gyradius_statistics::tail;
-use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{DMatrix, Matrix3, Vector3};
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::fmt;
@@ -9,8 +9,11 @@ use std::fmt;
 use crate::assessment::{Goodness, Test};
 
 use super::{
-    AxesFinding, PrincipalFit, matching::mean_attitude, relabel::Sample, root::RootEstimate,
-    root::RootFit,
+    AxesFinding, PrincipalFit,
+    matching::mean_attitude,
+    relabel::Sample,
+    root::{RootEstimate, RootFit},
+    round::{direction, direction_near},
 };
 
 /// A column that differs from a sum of others by less than this share of its length is that sum: two roots that are equal
@@ -233,11 +236,9 @@ impl PrincipalFit {
             // The tilt of the axis that has a direction, in the body.
             AxesFinding::FreeTurn { axis } => {
                 let k = axis - 1;
-                let direction = |q: &UnitQuaternion<f64>| q.inverse() * Vector3::ith(k, 1.0);
-                let centre = direction(&mean);
+                let centre = direction(&mean, k);
                 let tilt = |s: &Sample| {
-                    let a = direction(&s.attitude);
-                    let p = mean * (a * 1.0_f64.copysign(a.dot(&centre)));
+                    let p = mean * direction_near(&centre, &s.attitude, k);
                     Vector3::new(p[(k + 1) % 3], p[(k + 2) % 3], 0.0)
                 };
                 samples.iter().map(tilt).collect()

@@ -24,7 +24,7 @@ use crate::read::belong;
 use matching::matched;
 use names::Names;
 use relabel::{Relabeling, Sample};
-use round::{round_axes, straightened};
+use round::{Roundness, straightened};
 
 pub use axes::{AxesFinding, AxesFit};
 pub use goodness::{Aspect, Assessment, FitTest};
@@ -235,14 +235,14 @@ impl PrincipalFit {
         let doubtful = Names::of(&fitted.roots, fitted.axes.law()).doubtful(&fitted.samples);
         let Fitted { samples: named, nominal, roots, axes, .. } = fitted;
         // Two axes have changed their names for nothing if the body is round about the third.
-        let round = round_axes(&named);
-        let for_nothing = |a: usize, b: usize| a == b || round[3 - a - b];
+        let round = Roundness::of(&named);
+        let for_nothing = |a: usize, b: usize| a == b || round.is_about(3 - a - b);
         let (mut swapped, mut flipped) = (0, 0);
         for (sample, before) in named.iter().zip(&apart) {
             let g = nearest(&before.attitude, &sample.attitude);
             let swaps = !(0..3).all(|k| for_nothing(k, g.order[k]));
             swapped += usize::from(swaps);
-            flipped += usize::from(!swaps && g.turn.angle() > SAME && !round.contains(&true));
+            flipped += usize::from(!swaps && g.turn.angle() > SAME && round == Roundness::No);
         }
         let sample_deviations = deviations(&sorted);
         let mut rows: Vec<(usize, Sample)> = order.into_iter().zip(named).collect();

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{AxesFinding, DOUBTFUL, PrincipalFit, root::RootEstimate, round::round_axes};
+use super::{AxesFinding, DOUBTFUL, PrincipalFit, root::RootEstimate, round::Roundness};
 
 /// Moments nearer than this, in deviations of their difference, count as equal within their scatter.
 const EQUAL: f64 = 2.0;
@@ -110,12 +110,12 @@ impl fmt::Display for FitNote {
                 write!(
                     f,
                     "principal moments {a} and {b} are equal in every sample: a turn about axis {axis} changes nothing, and \
-                     of it the samples say nothing"
+                     the samples say nothing of it"
                 )
             }
             Self::Round { axis: None } => f.write_str(
-                "the three principal moments are equal in every sample: a turn changes nothing, and of the axes the \
-                 samples say nothing",
+                "the three principal moments are equal in every sample: a turn changes nothing, and the samples say \
+                 nothing of the axes",
             ),
             Self::FreeTurn { axis } => write!(
                 f,
@@ -185,13 +185,13 @@ impl PrincipalFit {
         let mut notes = Vec::new();
         let finding = self.axes.finding();
         let mut told = false;
-        let round = round_axes(&self.samples);
-        match (0..3).find(|axis| round[*axis]) {
-            Some(_) if round == [true; 3] => notes.push(FitNote::Round { axis: None }),
-            Some(axis) => notes.push(FitNote::Round { axis: Some(axis + 1) }),
-            None => {}
+        let round = Roundness::of(&self.samples);
+        match round {
+            Roundness::No => {}
+            Roundness::About(axis) => notes.push(FitNote::Round { axis: Some(axis + 1) }),
+            Roundness::Ball => notes.push(FitNote::Round { axis: None }),
         }
-        for axis in (0..3).filter(|axis| !round[*axis]) {
+        for axis in (0..3).filter(|axis| !round.is_about(*axis)) {
             let (a, b) = (self.roots[(axis + 1) % 3], self.roots[(axis + 2) % 3]);
             let scatter = a.deviation().hypot(b.deviation());
             if !((a.mean() - b.mean()).abs() < EQUAL * scatter) {
@@ -208,7 +208,7 @@ impl PrincipalFit {
         }
         match finding {
             // Told above.
-            _ if round.contains(&true) => {}
+            _ if round != Roundness::No => {}
             AxesFinding::FreeTurn { axis } if !told => notes.push(FitNote::FreeTurn { axis }),
             AxesFinding::Free => notes.push(FitNote::Free),
             AxesFinding::Still => {

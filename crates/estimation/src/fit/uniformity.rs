@@ -3,19 +3,20 @@
 use gyradius_statistics::tail;
 use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 
-use super::{relabel::Sample, root::RootFit, round::round_axes};
+use super::{relabel::Sample, root::RootFit, round::Roundness};
 
 /// Uniform angles are taken for not uniform this often.
 const SIZE: f64 = 0.01;
 /// Moments this many deviations apart are never taken for each other.
 const APART: f64 = 3.0;
 
-/// Whether the samples may leave all angles of the axes undetermined, and the turn about which axes: by tests of uniformity that do not
-/// depend on how axes of equal moments are named, at 1 %.
+/// Whether the samples may leave all angles of the axes undetermined, and the turn about which axes: by tests of uniformity
+/// that do not depend on how axes of equal moments are named, at 1 %. A turn that changes nothing is undetermined.
 pub(super) fn undetermined(
     samples: &[Sample],
     roots: &[RootFit; 3],
     mean: &UnitQuaternion<f64>,
+    round: Roundness,
 ) -> (bool, [bool; 3]) {
     let n = samples.len() as f64;
     // Axis k is the odd one of the pair that remains.
@@ -23,19 +24,15 @@ pub(super) fn undetermined(
         let (a, b) = (roots[(k + 1) % 3], roots[(k + 2) % 3]);
         (a.mean() - b.mean()).abs() > APART * a.deviation().hypot(b.deviation())
     });
-    let round = round_axes(samples);
-    if round.iter().filter(|round| **round).count() > 1 {
+    if round == Roundness::Ball {
         return (true, [false; 3]);
     }
     let any = uniform_p_value(samples, apart) > SIZE;
+    if round != Roundness::No {
+        return (any, [0, 1, 2].map(|axis| round.is_about(axis)));
+    }
     let mut about = [false; 3];
     for (axis, apart) in apart.into_iter().enumerate() {
-        if round[axis] {
-            about[axis] = true;
-        }
-        if round.contains(&true) {
-            continue;
-        }
         // Named by moment, an axis is known but for its sign; else up to quarter turns.
         let fold = if apart { 2.0 } else { 4.0 };
         let (mut c, mut s) = (0.0, 0.0);

@@ -6,7 +6,7 @@ mod section;
 #[cfg(test)]
 mod tests;
 
-use gyradius_campaign::{Measured, Requirement, Runs, RunsError, varies};
+use gyradius_campaign::{Column, Measured, Requirement, Runs, RunsError, varies};
 use gyradius_statistics::{
     Confidence, PairSeparation, QuantileCells, RankCorrelation, Ranks, SuccessByDecile, holm,
     log_likelihood_ratio,
@@ -14,6 +14,7 @@ use gyradius_statistics::{
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::quantity::scale_of;
 use rows::FirstRuns;
 
 pub(crate) use section::sections;
@@ -122,10 +123,11 @@ pub(crate) fn found(runs: &Runs, asked: Asked<'_>) -> Result<Option<WhereRunsFai
     let (there, fails) = rows.failing(asked.requirements)?;
     let judged: Vec<Counted> = fails.iter().map(|fails| Counted::new(fails)).collect();
     let outcomes = outcomes(asked);
-    let of_outcomes = rows.numbers(&outcomes)?;
+    let numbers = rows.numbers(&outcomes)?;
+    let moves = |(outcome, numbers): &(Measured, Vec<f64>)| varying(runs, outcome, numbers);
+    let (outcomes, of_outcomes): (Vec<_>, Vec<_>) =
+        outcomes.into_iter().zip(numbers).filter(moves).unzip();
     let ranked: Vec<Ranked<'_>> = of_outcomes.par_iter().map(|y| Ranked::new(y)).collect();
-
-    let moves: Vec<bool> = outcomes.iter().zip(&of_outcomes).map(is_more_than_rounding).collect();
 
     let mut tenths: Vec<Vec<Tenths>> = vec![Vec::new(); judged.len()];
     let mut correlations: Vec<Vec<Correlation>> = vec![Vec::new(); outcomes.len()];
@@ -139,8 +141,7 @@ pub(crate) fn found(runs: &Runs, asked: Asked<'_>) -> Result<Option<WhereRunsFai
             continue;
         }
         let of_inputs: Vec<_> = held.each().map(|(input, x)| (input, Ranked::new(x))).collect();
-        let ranked = ranked.iter().zip(&mut correlations).zip(&moves);
-        for ((outcome, all), _) in ranked.filter(|(_, moves)| **moves) {
+        for (outcome, all) in ranked.iter().zip(&mut correlations) {
             let of = of_inputs.par_iter();
             all.par_extend(of.filter_map(|(input, x)| Correlation::new(input, x, outcome)));
         }
@@ -179,14 +180,14 @@ pub(crate) fn found(runs: &Runs, asked: Asked<'_>) -> Result<Option<WhereRunsFai
     Ok((!nothing).then_some(found))
 }
 
-/// Whether an outcome differs between runs by more than rounding, of a degree if it is an angle.
-fn is_more_than_rounding((outcome, numbers): (&Measured, &Vec<f64>)) -> bool {
+/// Whether an outcome differs between runs by more than rounding.
+fn varying(runs: &Runs, outcome: &Measured, numbers: &[f64]) -> bool {
+    let of = |name: &String| runs.columns().iter().find(|column| column.name() == name);
+    let units = outcome.columns().iter().map(|name| of(name).and_then(Column::unit));
+    let scale = units.map(|unit| scale_of(unit.unwrap_or_default())).fold(0.0, f64::max);
     let finite = || numbers.iter().copied().filter(|x| x.is_finite());
-    let scale = if outcome.columns().iter().all(|name| name.ends_with("_deg")) { 1.0 } else { 0.0 };
-    finite()
-        .reduce(f64::min)
-        .zip(finite().reduce(f64::max))
-        .is_some_and(|(a, b)| varies(a, b, scale))
+    let range = finite().reduce(f64::min).zip(finite().reduce(f64::max));
+    range.is_some_and(|(least, most)| varies(least, most, scale))
 }
 
 /// The quantities of the requirements, each once, or the main outcomes without any.
