@@ -121,7 +121,7 @@ pub use number::plain;
 pub use requirement::{
     Bound, ConvergencePoint, Counting, Distribution, DistributionPoint, Event, FailedRuns,
     Judgement, JudgementError, Judging, Looks, Measured, Requirement, RequirementError, RunBeyond,
-    VehiclesKeeping, one_decimal, percent_beside, percent_or_less, percent_or_more,
+    VehiclesKeeping, one_decimal, percent_beside, percent_or_less, percent_or_more, rounded_down,
     share_in_percent, stated_in_percent,
 };
 pub use room::disk_left;

@@ -42,6 +42,46 @@ fn the_page_shows_what_is_printed() {
     assert!(PAGE.contains(&list));
 }
 
+/// A dash stands where one of two numbers is constant, drawn or to first order, and nowhere else.
+#[test]
+fn what_is_constant_correlates_with_nothing() {
+    let shell = Scratch::new();
+    let header = "part,mass_kg,mass_sigma,cx,cy,cz,i11,i22,i33\n";
+    // Both centres in one plane, or on one line: what is out of it is constant.
+    for (centres, varying) in [
+        (
+            ["0.3,0.1,0", "1,0.5,0"],
+            &["mass_kg", "centre_1", "centre_2", "i11", "i22", "i33", "i12"][..],
+        ),
+        (["0.3,0,0", "1,0,0"], &["mass_kg", "centre_1", "i22", "i33"]),
+        (["0.3,0.1,2", "1,0.5,-1"], &["mass_kg", "centre_1", "centre_2", "centre_3", "i"]),
+        (["1,2,3", "1,2,3"], &["mass_kg"]),
+    ] {
+        let rows =
+            format!("{header}a,10,0.1,{},1,2,2.5\nb,5,0,{},0.5,0.6,0.7\n", centres[0], centres[1]);
+        fs::write(shell.path("parts.csv"), rows).unwrap();
+        for draws in ["0", "1000"] {
+            let out = shell.rollup(&["parts.csv", "-n", draws]);
+            let rows: Vec<Vec<&str>> = out
+                .lines()
+                .skip_while(|line| !line.starts_with("correlations by"))
+                .skip(1)
+                .take(9)
+                .map(|line| line.split_whitespace().collect())
+                .collect();
+            let names: Vec<&str> =
+                ["mass_kg"].into_iter().chain(rows.iter().map(|row| row[0])).collect();
+            let varies = |i: usize| varying.iter().any(|name| names[i].contains(name));
+            for (i, row) in rows.iter().enumerate().map(|(i, row)| (i + 1, row)) {
+                assert_eq!(row.len(), i + 1, "{out}");
+                for j in 0..i {
+                    assert_eq!(row[j + 1] != "-", varies(i) && varies(j), "{i} {j}: {out}");
+                }
+            }
+        }
+    }
+}
+
 /// The row of the paper, in its own signs, to its digits; its Izz is 0.29 from the sum of its own parts.
 #[test]
 fn the_published_example_comes_out() {

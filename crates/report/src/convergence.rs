@@ -2,6 +2,8 @@
 
 use gyradius_campaign::{ConvergencePoint, Judgement, Looks, Requirement, stated_in_percent};
 
+use gyradius_statistics::Interval;
+
 use crate::Drawing;
 use crate::axis::{Spacing, Tick, Units, decades, ticks};
 use crate::field::{ACROSS, Field, HIGH, band_pen, line_pen, required_pen};
@@ -41,9 +43,14 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)], looks: &[u64]) 
     let logs = estimates().map(|e| (e.runs as f64).log10());
     let (first, end) =
         logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), x| (l.min(x), u.max(x)));
-    let (first, end) = if first <= end { (first, end.max(first + 0.5)) } else { (1.0, 2.0) };
+    let (first, end) = match end - first {
+        none if none < 0.0 => (1.0, 2.0),
+        // A third to each side of a single number of runs at least.
+        narrow if narrow < 0.25 => (first - 0.125, first + 0.375),
+        _ => (first, end),
+    };
     let place = |log: f64| (log - first) / (end - first) * ACROSS;
-    let x = |e: &ConvergencePoint| px(place((e.runs as f64).log10()));
+    let x = |e: &ConvergencePoint| place((e.runs as f64).log10());
     let across = decades([first, end]).into_iter();
     let across: Vec<Tick> = across.map(|tick| Tick { at: place(tick.at), ..tick }).collect();
 
@@ -51,9 +58,18 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)], looks: &[u64]) 
     let mut field = Field::new(&across, &up, ["runs that count", shares.trim_end()]);
     for (i, (model, judgement)) in models.iter().enumerate() {
         let estimates = judgement.convergence();
-        let upper = estimates.iter().map(|e| format!("{} {}", x(e), y(e.interval.upper())));
-        let lower = estimates.iter().rev().map(|e| format!("{} {}", x(e), y(e.interval.lower())));
-        let band: Vec<String> = upper.chain(lower).collect();
+        let corner =
+            |e: &ConvergencePoint, by: f64, share: f64| format!("{} {}", px(x(e) + by), y(share));
+        // The interval of a single number of runs is a bar, for a band would have no width.
+        let sides: &[f64] = if estimates.len() == 1 { &[-5.0, 5.0] } else { &[0.0] };
+        let edge = |share: fn(&Interval) -> f64| {
+            let corners = estimates.iter().flat_map(move |e| sides.iter().map(move |by| (e, *by)));
+            corners.map(|(e, by)| corner(e, by, share(&e.interval))).collect::<Vec<_>>()
+        };
+        let band: Vec<String> = edge(Interval::upper)
+            .into_iter()
+            .chain(edge(Interval::lower).into_iter().rev())
+            .collect();
         if !band.is_empty() {
             field.plot.path(&band_pen(i), &format!("M{}z", band.join("L")));
         }
@@ -110,6 +126,9 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)], looks: &[u64]) 
         let pen = format!("fill=\"{}\" fill-opacity=\"0.3\"", style::MUTED);
         swatch.path(&pen, "M0 -6h26v12h-26z");
     });
+    if estimates().any(|e| 100.0 * e.interval.upper() > top) {
+        above.push("Intervals of the first runs go on above this axis.".to_owned());
+    }
     above.into_iter().for_each(|note| field.note(note));
     field.finish(&title, &description(models))
 }
@@ -137,7 +156,8 @@ fn description(models: &[(&str, &Judgement)]) -> String {
             .step_by(6)
             .map(|e| format!("{} % of {}", significant(100.0 * e.failing, 3), e.runs))
             .collect();
-        text.push_str(&format!(" {model}: {}.", told.join(", ")));
+        let told = if told.is_empty() { "no run counts".to_owned() } else { told.join(", ") };
+        text.push_str(&format!(" {model}: {told}."));
     }
     text
 }

@@ -3,7 +3,7 @@
 use gyradius_campaign::{
     Bound, Column, Counting, FailedRuns, Judgement, Judging, Looks, Measured, Requirement,
     RunBeyond, Runs, Table, one_decimal, percent_beside, percent_or_less, percent_or_more, plain,
-    stated_in_percent,
+    rounded_down, stated_in_percent,
 };
 use gyradius_report::{
     Drawing, PageCell, PageTable, Section, Text, convergence_figure, distribution_figure,
@@ -208,7 +208,7 @@ pub(crate) fn sections(scenario: &impl Subject, head: &Head) -> Vec<Section> {
             let judgement = &judged.judgement;
             let Some(margin) = judgement.margin() else { return PageCell::from("–") };
             let deviations = judgement.margin_deviations().map(|d| format!("{} σ", one_decimal(d)));
-            let cell = PageCell::from(Text::from(significant(margin, 4)));
+            let cell = PageCell::from(Text::from(significant(rounded_down(margin, 4), 4)));
             deviations.into_iter().fold(cell, |cell, d| cell.line(Text::default().quiet(d)))
         })
         .numbers("share of the runs that keep it", |judged| {

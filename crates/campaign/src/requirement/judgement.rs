@@ -14,7 +14,8 @@ use super::{
     gathering::{Gathering, RunBeyond},
     groups::Groups,
     rounding::{
-        one_decimal, percent_beside, percent_or_less, percent_or_more, rounded, stated_in_percent,
+        one_decimal, percent_beside, percent_or_less, percent_or_more, rounded_down,
+        stated_in_percent,
     },
 };
 use crate::{
@@ -363,7 +364,7 @@ impl fmt::Display for Judgement {
             None => writeln!(f, "  bound        none: too few runs, or too many failed")?,
         }
         if let Some(margin) = self.margin {
-            write!(f, "  margin       {}", plain(rounded(margin, 5)))?;
+            write!(f, "  margin       {}", plain(rounded_down(margin, 5)))?;
             match self.margin_deviations {
                 Some(deviations) => {
                     let deviations = one_decimal(deviations);

@@ -32,7 +32,7 @@ pub use judgement::{Judgement, JudgementError, VehiclesKeeping};
 pub use judging::Judging;
 pub use measured::Measured;
 pub use rounding::{
-    one_decimal, percent_beside, percent_or_less, percent_or_more, share_in_percent,
+    one_decimal, percent_beside, percent_or_less, percent_or_more, rounded_down, share_in_percent,
     stated_in_percent,
 };
 pub(crate) use words::Words;

@@ -118,6 +118,12 @@ pub(super) fn rounded(x: f64, digits: usize) -> f64 {
     format!("{x:.*e}", digits.saturating_sub(1)).parse().unwrap_or(x)
 }
 
+/// A number to so many digits that is not above the number itself: of a margin, what there is at least.
+#[must_use]
+pub fn rounded_down(x: f64, digits: usize) -> f64 {
+    rounded_to(x, digits, false)
+}
+
 /// A number to so many digits, that is not below it if it is to be rounded up, else not above.
 fn rounded_to(x: f64, digits: usize, up: bool) -> f64 {
     let nearest = format!("{x:.*e}", digits.saturating_sub(1));
@@ -242,6 +248,17 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    proptest! {
+        /// A number rounded down is not above the number itself, and near.
+        #[test]
+        fn numbers_are_rounded_down(x in prop_oneof![-1e3..1e3_f64, -1e-300..1e-300_f64, -f64::MAX..f64::MAX], digits in 1..=17_usize) {
+            let down = rounded_down(x, digits);
+            let unit = 1.01 * 10_f64.powi(1 - digits as i32) * x.abs();
+            prop_assert!(down <= x && x - down <= unit.max(5e-324), "{} {}", down, x);
+            prop_assert_eq!(rounded_down(down, digits), down);
         }
     }
 

@@ -60,7 +60,7 @@ proptest! {
         let models: Vec<(&str, &Judgement)> = names.iter().map(String::as_str).zip(&judged).collect();
         for drawing in [distribution_figure("f", "c", &requirement, &models), convergence_figure("f", "c", &requirement, &models, &[100, 1000])] {
             let seen = read(&drawing.svg);
-            prop_assert!(seen.contains("a <name>"));
+            prop_assert!(seen.contains("a <name>") && !seen.contains(": ."));
             prop_assert!(names.iter().all(|name| seen.contains(name)));
             let least = sizes(&drawing.svg).into_iter().fold(f64::INFINITY, f64::min);
             prop_assert!(least * 360.0 / crate::field::WIDTH >= 9.0, "{}", least);
@@ -137,6 +137,39 @@ fn shares_above_the_axis_leave_the_plot() {
         }
     }
     assert!((2..5).contains(&above), "{above}");
+}
+
+/// The interval of a single number of runs is a bar that can be seen; where no run counts, the words say so.
+#[test]
+fn a_single_number_of_runs_has_an_interval() {
+    let requirement: Requirement = "x <= 1 in 50 % at 90 %".parse().unwrap();
+    let left_out = requirement.clone().with_failed_runs(FailedRuns::LeftOut);
+    for (numbers, requirement, drawn) in [
+        (vec![Some(0.5)], &requirement, true),
+        (vec![None], &requirement, true),
+        (vec![Some(0.5), None], &left_out, true),
+        (vec![None, None], &left_out, false),
+    ] {
+        let judgement = judged(&numbers, requirement).unwrap();
+        assert_eq!(judgement.convergence().len(), usize::from(drawn), "{numbers:?}");
+        let svg = convergence_figure("f", "c", requirement, &[("m", &judgement)], &[]).svg;
+        let pen = format!("<path {} d=\"M", band_pen(0));
+        let shapes = svg.split(&pen).skip(1).map(|rest| rest.split('"').next().unwrap());
+        let bars: Vec<Vec<f64>> = shapes
+            .filter(|d| d.contains('L'))
+            .map(|d| {
+                d.trim_end_matches('z')
+                    .split('L')
+                    .map(|at| at.split(' ').next().unwrap().parse().unwrap())
+                    .collect()
+            })
+            .collect();
+        assert_eq!(bars.len(), usize::from(drawn), "{svg}");
+        for x in bars {
+            assert!(x[0] > 0.0 && x[1] - x[0] > 5.0 && x[2] == x[1] && x[3] == x[0], "{x:?}");
+        }
+        assert_eq!(svg.contains("m: no run counts."), !drawn, "{svg}");
+    }
 }
 
 /// Limits that differ in the last digits are told apart where the axis does.

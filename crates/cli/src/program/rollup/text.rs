@@ -59,18 +59,25 @@ fn numbers(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
 }
 
 fn correlations(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
-    let first = shown.rollup.assembly().first_order().correlations();
+    let first_order = shown.rollup.assembly().first_order();
+    let first = first_order.correlations();
     let drawn = shown.draws.and_then(|drawn| drawn.moments.spread.as_ref());
     let of = |i: usize, j: usize| match drawn {
         Some(spread) => spread.correlation[i][j],
         None => first[(i, j)],
     };
+    let deviations = drawn.map_or_else(|| first_order.deviations(), |spread| spread.deviation);
     let by = if drawn.is_some() { "drawing" } else { "first order" };
     writeln!(out, "\ncorrelations by {by}")?;
     for i in 1..10 {
         write!(out, "  {:<16}", TenParameters::COLUMNS[i])?;
         for j in 0..i {
-            write!(out, "{:>7.2}", of(i, j) + 0.0)?;
+            // What is constant correlates with nothing.
+            if deviations[i] > 0.0 && deviations[j] > 0.0 {
+                write!(out, "{:>7.2}", of(i, j) + 0.0)?;
+            } else {
+                write!(out, "{:>7}", "-")?;
+            }
         }
         writeln!(out)?;
     }
