@@ -92,10 +92,11 @@ impl OutlineShape {
         radius_m: f64,
     ) -> Result<Self, OutlineError> {
         check("centre_m", &centre_m)?;
-        // Scaled first, so that the squares neither overflow nor vanish.
+        // Scaled first, so that the squares neither overflow nor vanish. A unit vector stays as it is, so that a ring reads back.
         let largest = axis.amax();
+        let is_unit = (axis.norm_squared() - 1.0).abs() <= 8.0 * f64::EPSILON;
         let unit = (largest > 1e-150 && largest.is_finite())
-            .then(|| Unit::new_normalize(axis / largest).into_inner());
+            .then(|| if is_unit { axis } else { Unit::new_normalize(axis / largest).into_inner() });
         let Some(unit) = unit.filter(|a| a.iter().all(|x| x.is_finite())) else {
             let entry = axis.iter().copied().find(|x| !x.is_finite());
             return Err(OutlineError::Axis { norm: entry.unwrap_or(largest) });
@@ -394,6 +395,8 @@ mod tests {
             prop_assume!(Vector3::from(a).norm() > 1e-3);
             let shape = OutlineShape::ring(c.into(), axis, radius).unwrap();
             let Kind::Ring(ring) = shape.kind() else { panic!() };
+            // What is written of it reads back as it.
+            prop_assert_eq!(&OutlineShape::ring(ring.centre, ring.axis, ring.radius).unwrap(), &shape);
             let mut largest = 0.0_f64;
             for i in 0..720 {
                 let (sin, cos) = f64::from(i).to_radians().mul_add(0.5, 0.0).sin_cos();

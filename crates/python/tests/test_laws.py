@@ -373,6 +373,16 @@ def test_estimates(link: MassProperties) -> None:
     std = np.sqrt(np.diag(cov))
     assert (np.abs(made - mean) < 0.05 * std).all()
     assert np.allclose(np.sqrt(np.diag(spread)), std, rtol=0.05)
+    # The law is the nearer one; deviations are told in percent.
+    for deviations in (1.0, 30.0):
+        near = gyradius.from_estimate(mean, deviations**2 * cov)
+        both = ((near.joint, near.joint_distance), (near.log_cholesky, near.log_cholesky_distance))
+        known = [(law, how) for law, how in both if law is not None and how is not None]
+        best = min(known, key=lambda one: (not one[1]["is_exact"], one[1]["total"]))
+        assert near.law is best[0]
+        for law, how in known:
+            ratio = np.sqrt(np.diag(law.linear_moments[1])) / (deviations * std)
+            assert np.allclose(100.0 * (ratio - 1.0), how["deviations"], atol=0.5 * deviations)
     # One that no body has is moved.
     mean = mean.copy()
     mean[6] += 0.009

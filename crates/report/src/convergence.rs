@@ -45,7 +45,7 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)], looks: &[u64]) 
         logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), x| (l.min(x), u.max(x)));
     let (first, end) = match end - first {
         none if none < 0.0 => (1.0, 2.0),
-        // A third to each side of a single number of runs at least.
+        // Room to each side of a single number of runs.
         narrow if narrow < 0.25 => (first - 0.125, first + 0.375),
         _ => (first, end),
     };

@@ -34,7 +34,10 @@ pub(super) fn read(answer: &[u8], run: u64, outputs: &[Column]) -> Result<Vec<f6
     let parsed: Answer<'_> = serde_json::from_slice(answer).map_err(|error| {
         match not_a_number(answer) {
             // Python writes these, which JSON does not know.
-            Some(value) => Trouble::NotFinite { output: None, value: value.to_owned() },
+            Some((key, value)) => {
+                let output = key.filter(|key| outputs.iter().any(|column| column.name() == key));
+                Trouble::NotFinite { output, value: value.to_owned() }
+            }
             None => Trouble::NotJson { problem: error.to_string(), line: answer.to_vec() },
         }
     })?;
@@ -83,20 +86,31 @@ pub(super) fn declared<N: AsRef<str>, V>(
     named.map(number).collect()
 }
 
-/// The first of the words for numbers that are not finite that stands outside of texts.
-fn not_a_number(answer: &[u8]) -> Option<&'static str> {
+/// The first of the words for numbers that are not finite that stands outside of texts, after the key that it is the value of.
+fn not_a_number(answer: &[u8]) -> Option<(Option<String>, &'static str)> {
     let (mut in_text, mut place) = (false, 0);
+    // The text before, and where what follows it begins.
+    let (mut text, mut after) = (0..0, 0);
     while let Some(byte) = answer.get(place) {
         match byte {
             b'\\' if in_text => place += 1,
-            b'"' => in_text = !in_text,
+            b'"' => {
+                in_text = !in_text;
+                if in_text {
+                    text.start = place;
+                } else {
+                    (text.end, after) = (place + 1, place + 1);
+                }
+            }
             _ if in_text => {}
             _ => {
                 let words = ["NaN", "-Infinity", "Infinity", "nan", "-inf", "inf"];
                 let found =
                     words.into_iter().find(|word| answer[place..].starts_with(word.as_bytes()));
-                if found.is_some() {
-                    return found;
+                if let Some(word) = found {
+                    let is_key = answer[after..place].trim_ascii() == b":";
+                    let key = is_key.then(|| serde_json::from_slice(&answer[text]).ok());
+                    return Some((key.flatten(), word));
                 }
             }
         }
@@ -132,3 +146,45 @@ impl<'de: 'a, 'a> Deserialize<'de> for Outputs<'a> {
 /// A name that is borrowed where it can be.
 #[derive(Deserialize)]
 struct Name<'a>(#[serde(borrow)] Cow<'a, str>);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// What is no number is told of the output that it is of, whatever that is called and whatever stands around it.
+        #[test]
+        fn the_output_of_what_is_no_number_is_named(
+            name in prop::sample::select(vec!["y", "spin_rad_per_s", "größe", "NaN", "a\\b"]),
+            before in prop::sample::select(vec!["", "\"x\": 1.5, ", "\"NaN \\\" inf\": \"-Infinity\", ", "\"x\":[],"]),
+            word in prop::sample::select(vec!["NaN", "Infinity", "-Infinity", "nan", "-inf", "inf"]),
+            blank in prop::sample::select(vec!["", " ", " \t"]),
+            declared in any::<bool>(),
+        ) {
+            let key = serde_json::to_string(name).unwrap();
+            let answer = format!("{{\"run\": 3, \"outputs\": {{{before}{key}{blank}:{blank}{word}, \"z\": NaN}}}}");
+            let columns = [if declared { name } else { "z" }, "x"];
+            let columns = columns.map(|name| Column::number(name, "1", "A number."));
+            let told = read(answer.as_bytes(), 3, &columns).unwrap_err();
+            let Trouble::NotFinite { output, value } = told else { panic!("{answer}") };
+            prop_assert_eq!(value, word, "{}", answer);
+            prop_assert_eq!(output.as_deref(), declared.then_some(name), "{}", answer);
+        }
+    }
+
+    /// A word that is the value of no output names none.
+    #[test]
+    fn what_is_of_no_output_names_none() {
+        let columns = [Column::number("y", "1", "A number.")];
+        for answer in [
+            r#"{"run": NaN, "outputs": {"y": 1}}"#,
+            r#"{"outputs": {"y": [1, NaN]}}"#,
+            "NaN",
+            r#"{"outputs": {"y", NaN}}"#,
+        ] {
+            let told = read(answer.as_bytes(), 3, &columns).unwrap_err();
+            assert!(matches!(told, Trouble::NotFinite { output: None, .. }), "{answer}");
+        }
+    }
+}

@@ -208,8 +208,9 @@ Examples:
 
 The same scenario, runs and seed give the same numbers on any number of threads.
 
-Exit code: 0; 1 if more runs of a model failed than --max-failed allows (the folder is written all the \
-same); 2 if something could not be read, done or written.";
+Exit code: 0; 1 if a requirement is not met or not decided, or if more runs of a model failed than \
+--max-failed allows (the folder is written all the same); 2 if something could not be read, done or \
+written; 130 or 143 after a signal, upon which the same command goes on.";
 
 pub(crate) const COMPLETIONS_EXAMPLES: &str = "\
 Examples:

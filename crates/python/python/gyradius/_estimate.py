@@ -20,7 +20,7 @@ class Estimate(NamedTuple):
     """The laws of bodies that are as near as can be to an estimate of the ten parameters."""
 
     law: MassPropertiesLaw
-    """The nearer of the two below."""
+    """The nearer of the two below: the one whose moments are exact, else the one with the smaller ``"total"``."""
     nearest: MassProperties
     """The nearest body to the mean, in the metric of the covariance."""
     moved: float
@@ -28,11 +28,19 @@ class Estimate(NamedTuple):
     joint: MassPropertiesLaw | None
     """Of mass, mass centre, gyration lengths and axes."""
     joint_distance: dict[str, Any] | None
-    """How far its moments are from those of the estimate."""
+    """How far its moments are from those of the estimate, in the ten numbers of the estimate:
+
+    * ``"means"``: what the means differ by, in standard deviations of the estimate; None for what does not vary.
+    * ``"deviations"``: by how many percent the standard deviations are larger; None for what does not vary.
+    * ``"mahalanobis"``: of the means, with the covariance of the estimate.
+    * ``"correlation"``: the largest difference of a correlation.
+    * ``"total"``: the root of the sum of all squares: of means in deviations, relative deviations, and correlations.
+    * ``"is_exact"``: whether mean and covariance are those of the estimate, but for rounding.
+    """
     log_cholesky: MassPropertiesLaw | None
     """A Gaussian in the log-Cholesky coordinates."""
     log_cholesky_distance: dict[str, Any] | None
-    """How far its moments are from those of the estimate."""
+    """The same of this law."""
 
 
 def from_estimate(phi: ArrayLike, cov: ArrayLike, *, form: Literal["linear", "natural"] = "linear") -> Estimate:
@@ -63,5 +71,5 @@ def from_estimate(phi: ArrayLike, cov: ArrayLike, *, form: Literal["linear", "na
     known = [(law, distance) for law, distance in laws if law is not None and distance is not None]
     if not known:
         raise ValueError("no law of bodies is near the estimate")
-    best = min(known, key=lambda one: (not one[1]["is_exact"], one[1]["mahalanobis"] + one[1]["correlation"]))
+    best = min(known, key=lambda one: (not one[1]["is_exact"], one[1]["total"]))
     return Estimate(best[0], MassProperties.of(nearest), moved, *laws[0], *laws[1])

@@ -69,7 +69,7 @@ impl UntilFile {
         for (key, number) in [("look_every", every), ("most_runs", most)] {
             if !number.is_multiple_of(flights) {
                 let problem = format!(
-                    "{number}: it must be so many times the {flights} flights of a vehicle"
+                    "{number}: it must be a multiple of {flights}, the flights of a vehicle"
                 );
                 return refused(key, problem);
             }
