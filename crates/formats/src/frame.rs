@@ -137,6 +137,19 @@ fn urdf(node: Node<'_, '_>) -> Result<Frame, LinkProblem> {
     let origin = node.child("origin");
     let numbers = |name| origin.and_then(|origin| origin.numbers(name, 3)).transpose();
     let (xyz, rpy) = (numbers("xyz")?, numbers("rpy")?);
+    // Since version 1.2 of the format.
+    let quaternion = origin.and_then(|origin| origin.numbers("quat_xyzw", 4)).transpose()?;
+    let rotation = match (rpy, quaternion) {
+        (Some(_), Some(_)) => {
+            return Err(FileBodyError::Both { first: "rpy", second: "quat_xyzw" }.into());
+        }
+        (rpy, None) => of_roll_pitch_yaw(three(&rpy.unwrap_or_default()).into()),
+        (None, Some(numbers)) => {
+            let [x, y, z, w] = std::array::from_fn(|i| numbers.get(i).map_or(0.0, |n| n.value));
+            let field = "quat_xyzw";
+            of_quaternion([w, x, y, z]).ok_or(LinkProblem::Orientation { field })?
+        }
+    };
     let centre_spot = match (&xyz, origin) {
         (Some(xyz), _) => Spot::of(xyz),
         (None, Some(origin)) => Spot::missing(origin.after_name(), " xyz=\"".to_owned(), "\""),
@@ -144,7 +157,7 @@ fn urdf(node: Node<'_, '_>) -> Result<Frame, LinkProblem> {
     };
     Ok(Frame {
         centre: xyz.map_or_else(Vector3::zeros, |xyz| three(&xyz)),
-        rotation: of_roll_pitch_yaw(three(&rpy.unwrap_or_default()).into()),
+        rotation,
         around: None,
         centre_spot,
         mass_spot: Spot::Nowhere,

@@ -116,7 +116,7 @@ impl Link {
         let read = |x: f64| self.written(x).parse::<f64>().unwrap();
         match (self.turn, style) {
             (Turn::None | Turn::Zero, _) | (_, Style::Full) => Matrix3::identity(),
-            (Turn::Quaternion, Style::Diagonal) => {
+            (Turn::Quaternion, Style::Diagonal | Style::Urdf) => {
                 let [w, x, y, z] = self.axes.map(read);
                 let n = w * w + x * x + y * y + z * z;
                 Matrix3::new(
@@ -168,7 +168,12 @@ impl Link {
         match style {
             Style::Urdf => {
                 let xyz = centre.map_or_else(String::new, |c| format!(" xyz=' {c}'"));
-                let rpy = if turned.is_empty() { turned } else { format!(" rpy=\"{turned}\"") };
+                let [w, x, y, z] = self.axes;
+                let rpy = match self.turn {
+                    Turn::None => String::new(),
+                    Turn::Quaternion => format!(" quat_xyzw='{}'", self.list(&[x, y, z, w])),
+                    Turn::Zero | Turn::Angles => format!(" rpy=\"{turned}\""),
+                };
                 let origin = if xyz.is_empty() && rpy.is_empty() {
                     String::new()
                 } else {
@@ -513,6 +518,16 @@ fn links_that_cannot_be_told_say_why() {
     let sdf =
         "<sdf><link><inertial><pose relative_to='a'>0 0 0 0 0 0</pose></inertial></link></sdf>";
     assert_eq!(problem("a.sdf", sdf), LinkProblem::RelativeTo { frame: "a".to_owned() });
+    let urdf = |turned: &str| {
+        let six = "<inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/>";
+        let inside = format!("<origin {turned}/><mass value='1'/>{six}");
+        problem("a.urdf", &format!("<robot><link><inertial>{inside}</inertial></link></robot>"))
+    };
+    let field = "quat_xyzw";
+    assert_eq!(urdf("quat_xyzw='0 0 0 0'"), LinkProblem::Orientation { field });
+    for turned in ["rpy='0 0 0' quat_xyzw='0 0 0 1'", "quat_xyzw='0 0 1'", "quat_xyzw='0 0 x 1'"] {
+        assert!(matches!(urdf(turned), LinkProblem::Body(_)), "{turned}");
+    }
     let gazebo =
         "<robot><gazebo reference='a'><inertial><mass>1</mass></inertial></gazebo></robot>";
     assert_eq!(problem("a.urdf", gazebo), LinkProblem::Gazebo);
