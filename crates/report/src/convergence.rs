@@ -1,7 +1,6 @@
 //! How the share of runs that fail a requirement comes to rest with the number of runs: a line a model, with its interval.
 
 use gyradius_campaign::{ConvergencePoint, Judgement, Looks, Requirement, stated_in_percent};
-
 use gyradius_statistics::Interval;
 
 use crate::Drawing;
@@ -40,15 +39,7 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)], looks: &[u64]) 
         up.map(|tick| Tick { at: tick.at / units.of(top) * HIGH, ..tick }).collect();
     let y = |share: f64| px(HIGH - (100.0 * share / top).clamp(0.0, 1.0) * HIGH);
 
-    let logs = estimates().map(|e| (e.runs as f64).log10());
-    let (first, end) =
-        logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), x| (l.min(x), u.max(x)));
-    let (first, end) = match end - first {
-        none if none < 0.0 => (1.0, 2.0),
-        // Room to each side of a single number of runs.
-        narrow if narrow < 0.25 => (first - 0.125, first + 0.375),
-        _ => (first, end),
-    };
+    let (first, end) = range(estimates().map(|e| (e.runs as f64).log10()));
     let place = |log: f64| (log - first) / (end - first) * ACROSS;
     let x = |e: &ConvergencePoint| place((e.runs as f64).log10());
     let across = decades([first, end]).into_iter();
@@ -133,6 +124,18 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)], looks: &[u64]) 
     field.finish(&title, &description(models))
 }
 
+/// From where to where an axis is on which these are, the logarithms of numbers of runs: half a decade at least, which always
+/// holds a tick, with room to each side.
+fn range(logs: impl Iterator<Item = f64>) -> (f64, f64) {
+    let (first, end) =
+        logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), x| (l.min(x), u.max(x)));
+    if first > end {
+        return (1.0, 2.0);
+    }
+    let room = (first + 0.5 - end).max(0.0);
+    (first - 0.25 * room, end + 0.75 * room)
+}
+
 /// What of the line between two points, whose heights are shares of the plot's, is not above the plot.
 fn below_top(a: [f64; 2], b: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     // Where the line crosses the upper edge.
@@ -160,4 +163,23 @@ fn description(models: &[(&str, &Judgement)]) -> String {
         text.push_str(&format!(" {model}: {told}."));
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whatever the numbers of runs are, they are on the axis, and so is a tick.
+    #[test]
+    fn every_axis_has_a_tick() {
+        for few in 1..400_u32 {
+            for many in few..400 {
+                let logs = [few, many].map(|runs| f64::from(runs).log10());
+                let (first, end) = range(logs.into_iter());
+                assert!(first <= logs[0] && logs[1] <= end, "{few} {many}");
+                assert!(!decades([first, end]).is_empty(), "{few} {many}");
+            }
+        }
+        assert_eq!(range(std::iter::empty()), (1.0, 2.0));
+    }
 }

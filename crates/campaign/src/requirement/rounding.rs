@@ -118,7 +118,7 @@ pub(super) fn rounded(x: f64, digits: usize) -> f64 {
     format!("{x:.*e}", digits.saturating_sub(1)).parse().unwrap_or(x)
 }
 
-/// A number to so many digits that is not above the number itself: of a margin, what there is at least.
+/// A number to so many digits, that is not above the number itself.
 #[must_use]
 pub fn rounded_down(x: f64, digits: usize) -> f64 {
     rounded_to(x, digits, false)
