@@ -21,6 +21,12 @@ impl Failure {
         Self { kind, message }
     }
 
+    /// Whether a number in the row of a run that failed is taken for what the run came to. An infinite one is, so that it is not left out
+    /// with the runs that came to nothing. Any other may be a draw, or what was reached before the failure.
+    pub(crate) fn has_number(number: f64) -> bool {
+        number.is_infinite()
+    }
+
     /// What kind it is, without numbers, so that failures of a kind can be counted.
     #[must_use]
     pub fn kind(&self) -> &str {

@@ -223,7 +223,11 @@ impl Surveys {
         let gather = |(numbered, empty): (&Numbered, &Option<Pass>)| {
             let mut pass = empty.clone()?;
             let first = block.first();
-            let numbers = block.numbers(&numbered.column)?.of_runs(first);
+            // A run that failed has its draws there, but none that is infinite is among the numbers of the others.
+            let is_of = |(run, x): &(u64, f64)| {
+                x.is_finite() || !block.failures.contains_key(&((run - first) as usize))
+            };
+            let numbers = block.numbers(&numbered.column)?.of_runs(first).filter(is_of);
             match numbered.subset.map(|place| &masks[place]) {
                 None => pass.extend(numbers),
                 Some(mask) => pass.extend(numbers.filter(|(run, _)| mask[(run - first) as usize])),

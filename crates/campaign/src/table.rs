@@ -280,19 +280,17 @@ impl Table {
     }
 
     /// What runs have in a column, by their places: numbers, whole numbers, and flags as 1 and 0; nothing in a column of texts, and
-    /// nothing of runs that failed.
+    /// nothing of runs that failed, except for numbers that are infinite: that is what such a run came to.
     pub fn measured(&self, column: &str) -> impl Fn(usize) -> Option<f64> {
         let values = self.column(column);
         move |place| {
-            if self.failures.contains_key(&place) {
-                return None;
-            }
-            match values? {
+            let number = match values? {
                 Values::Numbers(numbers) => numbers.get(place),
                 Values::Integers(integers) => integers.get(place)?.map(|whole| whole as f64),
                 Values::Flags(flags) => flags.get(place)?.map(|flag| f64::from(u8::from(flag))),
                 Values::Texts(_) => None,
-            }
+            };
+            number.filter(|x| Failure::has_number(*x) || !self.failures.contains_key(&place))
         }
     }
 

@@ -35,6 +35,10 @@ fn quantity() -> impl Strategy<Value = (&'static str, OfRow)> {
         ("x", (|row| row[0]) as OfRow),
         ("abs(\"y, as drawn\")", |row| row[1].map(f64::abs)),
         ("norm(x, \"y, as drawn\", z[1])", |row| {
+            // No length is less than one of its parts.
+            if row.contains(&Some(f64::INFINITY)) || row.contains(&Some(f64::NEG_INFINITY)) {
+                return Some(f64::INFINITY);
+            }
             let [x, y, z] = [row[0]?, row[1]?, row[2]?];
             Some(libm::hypot(libm::hypot(x.abs(), y), z))
         }),

@@ -174,7 +174,8 @@ mod tests {
         let mut page = "# The run table\n\n\
             `runs/<model>/` holds one row a run, in Parquet files that are named by their first and last runs; pandas, polars and\n\
             DuckDB open the folder as one table, in run order. A half-written Parquet file is refused by readers; half a\n\
-            CSV is read without a word. What a failed run has drawn is there, and its outcomes are null; so is every number that has no\n\
+            CSV is read without a word. What a failed run has drawn is there, and its outcomes are null, except for an infinite\n\
+            answer of a [simulator](simulators.md#what-can-go-wrong); so is every number that has no\n\
             meaning for a run. Numbers are stored bit for bit. They are not compressed, because hardly anything would be gained: of the 63 columns of\n\
             numbers of the built-in study, 467 bytes a run, LZ4 would leave 391 and zstd 380, both with the bytes of the numbers\n\
             split into streams (measured with pyarrow 26). [What to keep](study.md#keeping-less) saves more.\n\n\

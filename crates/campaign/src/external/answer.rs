@@ -31,16 +31,22 @@ pub(super) fn read(answer: &[u8], run: u64, outputs: &[Column]) -> Result<Vec<f6
         let problem = "it is a list".to_owned();
         return Err(Trouble::NotJson { problem, line: answer.to_vec() });
     }
-    let parsed: Answer<'_> = serde_json::from_slice(answer).map_err(|error| {
-        match not_a_number(answer) {
-            // Python writes these, which JSON does not know.
-            Some((key, value)) => {
-                let output = key.filter(|key| outputs.iter().any(|column| column.name() == key));
-                Trouble::NotFinite { output, value: value.to_owned() }
-            }
-            None => Trouble::NotJson { problem: error.to_string(), line: answer.to_vec() },
+    let in_json;
+    let parsed: Answer<'_> = match serde_json::from_slice(answer) {
+        Ok(parsed) => parsed,
+        Err(error) => {
+            let problem = error.to_string();
+            let not_json = || Trouble::NotJson { problem, line: answer.to_vec() };
+            let (first, text) = with_words(answer).ok_or_else(not_json)?;
+            in_json = text;
+            let (output, value) = (None, first.to_owned());
+            serde_json::from_slice(&in_json).map_err(|_| Trouble::NotFinite {
+                output,
+                value,
+                infinite: Vec::new(),
+            })?
         }
-    })?;
+    };
     if let Some(answered) = parsed.run.filter(|answered| *answered != run) {
         return Err(Trouble::OutOfTurn { answered });
     }
@@ -49,20 +55,30 @@ pub(super) fn read(answer: &[u8], run: u64, outputs: &[Column]) -> Result<Vec<f6
         (None, Some(text)) => return Err(Trouble::Error { text: text.into_owned() }),
         (Some(_), Some(_)) | (None, None) => return Err(Trouble::OutputsOrError),
     };
-    declared(found, outputs, |value| {
-        let number = value.get().parse::<f64>().ok().filter(|number| number.is_finite());
-        number.ok_or_else(|| shown(value.get().as_bytes(), 40))
+    declared(found, outputs, number, |value| {
+        let word = value.get().trim_matches('"');
+        let is_word = WORDS.iter().any(|(known, _)| *known == word);
+        shown(if is_word { word } else { value.get() }.as_bytes(), 40)
     })
 }
 
-/// The numbers of the declared outputs, in their order, among what was answered by name; what is no finite number is told as it is
+/// The number that a value is. One that is infinite may stand in quotation marks, for JSON has none.
+fn number(value: &&RawValue) -> Option<f64> {
+    let text = value.get();
+    let word = text.trim_matches('"');
+    word.parse().ok().filter(|number: &f64| number.is_infinite() || word == text)
+}
+
+/// The numbers of the declared outputs, in their order, among what was answered by name; what is no number is told as it is
 /// shown.
 pub(super) fn declared<N: AsRef<str>, V>(
     answered: impl IntoIterator<Item = (N, V)>,
     outputs: &[Column],
-    number: impl Fn(V) -> Result<f64, String>,
+    number: impl Fn(&V) -> Option<f64>,
+    shown: impl Fn(&V) -> String,
 ) -> Result<Vec<f64>, Trouble> {
-    let mut numbers = vec![None; outputs.len()];
+    // Of each output whether it was answered, and its number.
+    let (mut numbers, mut not_finite) = (vec![None; outputs.len()], None);
     for (place, (name, value)) in answered.into_iter().enumerate() {
         let name = name.as_ref();
         // Most simulators write them in the order in which they are declared.
@@ -74,49 +90,57 @@ pub(super) fn declared<N: AsRef<str>, V>(
         if numbers[place].is_some() {
             return Err(Trouble::Repeated { output: name.to_owned() });
         }
-        numbers[place] = Some(
-            number(value)
-                .map_err(|value| Trouble::NotFinite { output: Some(name.to_owned()), value })?,
-        );
+        let number = number(&value).filter(|number| !number.is_nan());
+        numbers[place] = Some(number);
+        if not_finite.is_none() && !number.is_some_and(f64::is_finite) {
+            let told = number.map_or_else(|| shown(&value), |infinite| infinite.to_string());
+            not_finite = Some((name.to_owned(), told));
+        }
+    }
+    if let Some((output, value)) = not_finite {
+        let infinite = |number: Option<Option<f64>>| number.flatten().filter(|x| x.is_infinite());
+        let infinite = numbers.into_iter().map(infinite).collect();
+        return Err(Trouble::NotFinite { output: Some(output), value, infinite });
     }
     let named = outputs.iter().zip(numbers);
-    let number = |(column, number): (&Column, Option<f64>)| {
-        number.ok_or_else(|| Trouble::Missing { output: column.name().to_owned() })
+    let number = |(column, number): (&Column, Option<Option<f64>>)| {
+        number.flatten().ok_or_else(|| Trouble::Missing { output: column.name().to_owned() })
     };
     named.map(number).collect()
 }
 
-/// The first of the words for numbers that are not finite that stands outside of texts, after the key that it is the value of.
-fn not_a_number(answer: &[u8]) -> Option<(Option<String>, &'static str)> {
+/// The words that Python and C write for numbers that are not finite, and what stands for them in JSON: numbers beyond all others, or a
+/// text.
+const WORDS: [(&str, &str); 6] = [
+    ("NaN", "\"NaN\""),
+    ("-Infinity", "-1e999"),
+    ("Infinity", "1e999"),
+    ("nan", "\"nan\""),
+    ("-inf", "-1e999"),
+    ("inf", "1e999"),
+];
+
+/// An answer in which all such words outside of texts are as JSON has them, and the first of them; none if there is none.
+fn with_words(answer: &[u8]) -> Option<(&'static str, Vec<u8>)> {
+    let (mut first, mut in_json) = (None, Vec::with_capacity(answer.len()));
     let (mut in_text, mut place) = (false, 0);
-    // The text before, and where what follows it begins.
-    let (mut text, mut after) = (0..0, 0);
-    while let Some(byte) = answer.get(place) {
-        match byte {
-            b'\\' if in_text => place += 1,
-            b'"' => {
-                in_text = !in_text;
-                if in_text {
-                    text.start = place;
-                } else {
-                    (text.end, after) = (place + 1, place + 1);
-                }
-            }
-            _ if in_text => {}
-            _ => {
-                let words = ["NaN", "-Infinity", "Infinity", "nan", "-inf", "inf"];
-                let found =
-                    words.into_iter().find(|word| answer[place..].starts_with(word.as_bytes()));
-                if let Some(word) = found {
-                    let is_key = answer[after..place].trim_ascii() == b":";
-                    let key = is_key.then(|| serde_json::from_slice(&answer[text]).ok());
-                    return Some((key.flatten(), word));
-                }
-            }
+    while let Some(&byte) = answer.get(place) {
+        let word = WORDS.into_iter().filter(|_| !in_text);
+        let word = word.into_iter().find(|(word, _)| answer[place..].starts_with(word.as_bytes()));
+        if let Some((word, json)) = word {
+            first = first.or(Some(word));
+            in_json.extend_from_slice(json.as_bytes());
+            place += word.len();
+            continue;
         }
-        place += 1;
+        // What stands after a backslash ends no text.
+        let together = if in_text && byte == b'\\' { 2 } else { 1 };
+        in_text ^= byte == b'"';
+        let end = answer.len().min(place + together);
+        in_json.extend_from_slice(&answer[place..end]);
+        place = end;
     }
-    None
+    Some((first?, in_json))
 }
 
 impl<'de: 'a, 'a> Deserialize<'de> for Outputs<'a> {
@@ -152,24 +176,67 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    /// What may stand in the place of a number, which number that is, and how it is told.
+    const VALUES: [(&str, Option<f64>, &str); 19] = [
+        ("-1.5e3", Some(-1500.0), ""),
+        ("0", Some(0.0), ""),
+        ("1e-999", Some(0.0), ""),
+        ("1e999", Some(f64::INFINITY), "inf"),
+        ("-1e400", Some(f64::NEG_INFINITY), "-inf"),
+        ("Infinity", Some(f64::INFINITY), "inf"),
+        ("-Infinity", Some(f64::NEG_INFINITY), "-inf"),
+        ("inf", Some(f64::INFINITY), "inf"),
+        ("-inf", Some(f64::NEG_INFINITY), "-inf"),
+        ("\"Infinity\"", Some(f64::INFINITY), "inf"),
+        ("\"-inf\"", Some(f64::NEG_INFINITY), "-inf"),
+        ("NaN", None, "NaN"),
+        ("nan", None, "nan"),
+        ("\"NaN\"", None, "NaN"),
+        ("null", None, "null"),
+        ("\"1.5\"", None, "\"1.5\""),
+        ("\"an \\\"inf\"", None, "\"an \\\"inf\""),
+        ("[1]", None, "[1]"),
+        ("true", None, "true"),
+    ];
+
     proptest! {
-        /// What is no number is told of the output that it is of, whatever that is called and whatever stands around it.
+        /// Whatever stands in the places of numbers, in whatever order: all numbers if they are finite, and otherwise the first that is
+        /// not, by its name, with those that are infinite.
         #[test]
-        fn the_output_of_what_is_no_number_is_named(
-            name in prop::sample::select(vec!["y", "spin_rad_per_s", "größe", "NaN", "a\\b"]),
-            before in prop::sample::select(vec!["", "\"x\": 1.5, ", "\"NaN \\\" inf\": \"-Infinity\", ", "\"x\":[],"]),
-            word in prop::sample::select(vec!["NaN", "Infinity", "-Infinity", "nan", "-inf", "inf"]),
+        fn numbers_are_read_or_told(
+            answered in Just(vec!["y", "größe", "NaN", "a\\b \"inf\": "]).prop_shuffle(),
+            values in prop::collection::vec(prop::sample::select(VALUES.to_vec()), 4),
             blank in prop::sample::select(vec!["", " ", " \t"]),
-            declared in any::<bool>(),
         ) {
-            let key = serde_json::to_string(name).unwrap();
-            let answer = format!("{{\"run\": 3, \"outputs\": {{{before}{key}{blank}:{blank}{word}, \"z\": NaN}}}}");
-            let columns = [if declared { name } else { "z" }, "x"];
+            let pairs = answered.iter().zip(&values).map(|(name, (text, ..))| {
+                format!("{}{blank}:{blank}{text}", serde_json::to_string(name).unwrap())
+            });
+            let answer = format!("{{\"run\": 3, \"outputs\": {{{}}}}}", pairs.collect::<Vec<_>>().join(","));
+            let columns = ["NaN", "y", "a\\b \"inf\": ", "größe"];
+            let of = |name: &str| values[answered.iter().position(|other| *other == name).unwrap()].1;
+            let expected = columns.map(of);
             let columns = columns.map(|name| Column::number(name, "1", "A number."));
-            let told = read(answer.as_bytes(), 3, &columns).unwrap_err();
-            let Trouble::NotFinite { output, value } = told else { panic!("{answer}") };
-            prop_assert_eq!(value, word, "{}", answer);
-            prop_assert_eq!(output.as_deref(), declared.then_some(name), "{}", answer);
+            let is_finite = |x: &Option<f64>| x.is_some_and(f64::is_finite);
+            match read(answer.as_bytes(), 3, &columns) {
+                Ok(numbers) => prop_assert_eq!(numbers.into_iter().map(Some).collect::<Vec<_>>(), expected, "{}", answer),
+                Err(Trouble::NotFinite { output, value, infinite }) => {
+                    let first = values.iter().position(|(_, number, _)| !is_finite(number)).unwrap();
+                    prop_assert_eq!(output.as_deref(), Some(answered[first]), "{}", answer);
+                    prop_assert_eq!(value, values[first].2, "{}", answer);
+                    let of = expected.map(|number| number.filter(|x| x.is_infinite()));
+                    prop_assert_eq!(infinite, of, "{}", answer);
+                }
+                Err(other) => panic!("{answer}: {other:?}"),
+            }
+        }
+
+        /// An answer of any bytes is read, and so is one that is cut off.
+        #[test]
+        fn no_answer_is_too_strange(mut bytes in prop::collection::vec(prop::sample::select(b"{}[]\":,\\ Nainf-I1e.ty".to_vec()), 0..60)) {
+            let columns = [Column::number("y", "1", "A number.")];
+            let _ = read(&bytes, 3, &columns);
+            bytes.splice(0..0, *b"{\"outputs\":{\"y\":");
+            let _ = read(&bytes, 3, &columns);
         }
     }
 
@@ -179,12 +246,15 @@ mod tests {
         let columns = [Column::number("y", "1", "A number.")];
         for answer in [
             r#"{"run": NaN, "outputs": {"y": 1}}"#,
-            r#"{"outputs": {"y": [1, NaN]}}"#,
             "NaN",
             r#"{"outputs": {"y", NaN}}"#,
+            r#"{"outputs": {"y": NaNo}}"#,
         ] {
             let told = read(answer.as_bytes(), 3, &columns).unwrap_err();
-            assert!(matches!(told, Trouble::NotFinite { output: None, .. }), "{answer}");
+            let Trouble::NotFinite { output: None, value, infinite } = told else {
+                panic!("{answer}: {told:?}")
+            };
+            assert!(value == "NaN" && infinite.is_empty(), "{answer}");
         }
     }
 }

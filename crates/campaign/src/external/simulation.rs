@@ -76,7 +76,8 @@ pub trait Inputs: Sync {
 /// # What fails
 /// A run fails, and its row says why, if its inputs cannot be drawn or are not finite; if the answer does not come in
 /// time, is too long, no JSON, written before the run was sent whole, that of another run, or followed by more; if a declared
-/// output is missing, repeated or not a finite number, or one is not declared; if the process ends or closes its pipes; and if the simulator says so. A process
+/// output is missing, repeated or not a finite number, or one is not declared; if the process ends or closes its pipes; and if the simulator says so.
+/// An infinite output stays in the row of the run, so that requirements on it count the run. A process
 /// that did not answer as agreed is killed with everything in its process group. If it had done runs before, the run is
 /// sent once more, to a process that is started for it alone, and what that does counts. So a run depends on its inputs
 /// alone, as long as the simulator itself keeps nothing from one run to the next, and a process that spoils itself spoils
@@ -137,6 +138,27 @@ pub struct Told {
     pub answer: Option<String>,
     /// The outputs in the order in which they are declared, or why there are none.
     pub outputs: Result<Vec<f64>, Failure>,
+    /// Those of the outputs that are infinite, if the run failed because of that; empty if it did not.
+    pub infinite: Vec<Option<f64>>,
+}
+
+/// What a run has that failed.
+struct Failed {
+    failure: Failure,
+    /// The outputs that it has nevertheless.
+    infinite: Vec<Option<f64>>,
+}
+
+impl From<Trouble> for Failed {
+    fn from(trouble: Trouble) -> Self {
+        Self { infinite: trouble.infinite().to_vec(), failure: trouble.failure() }
+    }
+}
+
+impl From<Failure> for Failed {
+    fn from(failure: Failure) -> Self {
+        Self { failure, infinite: Vec::new() }
+    }
 }
 
 impl<'a, I: Inputs> ExternalSimulation<'a, I> {
@@ -166,7 +188,11 @@ impl<'a, I: Inputs> ExternalSimulation<'a, I> {
         let (mut inputs, said) = (Vec::new(), RefCell::default());
         let outputs = self.outputs(run, &mut inputs, &mut None, Some(&said));
         let Said { request, answer } = said.into_inner();
-        Told { inputs, request, answer, outputs }
+        let (outputs, infinite) = match outputs {
+            Ok(outputs) => (Ok(outputs), Vec::new()),
+            Err(failed) => (Err(failed.failure), failed.infinite),
+        };
+        Told { inputs, request, answer, outputs, infinite }
     }
 
     /// The table of a run that was done alone: the row that a campaign has of it.
@@ -175,7 +201,12 @@ impl<'a, I: Inputs> ExternalSimulation<'a, I> {
     /// The inputs or the outputs do not go into their columns.
     pub fn table(&self, run: u64, told: &Told) -> Result<Table, TableError> {
         let mut table = Table::new(&self.model, run, self.columns())?;
-        self.push(run, &told.inputs, told.outputs.clone(), &mut table)?;
+        let failed = |failure: &Failure| Failed {
+            failure: failure.clone(),
+            infinite: told.infinite.clone(),
+        };
+        let outputs = told.outputs.as_ref().map(Clone::clone).map_err(failed);
+        self.push(run, &told.inputs, outputs, &mut table)?;
         Ok(table)
     }
 
@@ -184,12 +215,14 @@ impl<'a, I: Inputs> ExternalSimulation<'a, I> {
         &self,
         run: u64,
         inputs: &[Option<f64>],
-        outputs: Result<Vec<f64>, Failure>,
+        outputs: Result<Vec<f64>, Failed>,
         rows: &mut Table,
     ) -> Result<(), TableError> {
         let (outputs, failure) = match outputs {
-            Ok(outputs) => (outputs, None),
-            Err(failure) => (Vec::new(), Some(failure)),
+            Ok(outputs) => (outputs.into_iter().map(Cell::Number).collect(), None),
+            Err(Failed { failure, infinite }) => {
+                (infinite.into_iter().map(Cell::from).collect::<Vec<_>>(), Some(failure))
+            }
         };
         let missing = |all: usize, there: usize| {
             let missing = if failure.is_some() { all.saturating_sub(there) } else { 0 };
@@ -200,7 +233,7 @@ impl<'a, I: Inputs> ExternalSimulation<'a, I> {
         let cells = place
             .chain(drawn)
             .chain(missing(self.drawn.len(), inputs.len()))
-            .chain(outputs.iter().map(|number| Cell::Number(*number)))
+            .chain(outputs.iter().cloned())
             .chain(missing(self.outputs.len(), outputs.len()));
         rows.push(failure.clone(), cells)
     }
@@ -212,19 +245,19 @@ impl<'a, I: Inputs> ExternalSimulation<'a, I> {
         numbers: &mut Vec<Option<f64>>,
         kept: &mut Option<Child>,
         said: Option<&RefCell<Said>>,
-    ) -> Result<Vec<f64>, Failure> {
+    ) -> Result<Vec<f64>, Failed> {
         self.inputs.draw(run, numbers)?;
         let mut sent =
             self.drawn.iter().zip(&*numbers).filter_map(|(column, x)| Some((column, (*x)?)));
         if let Some((column, value)) = sent.find(|(_, value)| !value.is_finite()) {
             let name = column.name().to_owned();
-            return Err(Trouble::Input { name, value }.failure());
+            return Err(Trouble::Input { name, value }.into());
         }
         let seed = self.seeds.run(self.inputs.seed_stream(run)).next_u64() >> 11;
         let place: Vec<_> = self.inputs.place(run).into_iter().map(Some).collect();
         let (place, inputs) = (Named(&self.places, &place), Named(&self.drawn, numbers));
         let inputs = RunInputs { run, place, model: &self.model, seed, inputs };
-        self.simulator.ask(&inputs, &self.outputs, kept, said).map_err(Trouble::failure)
+        Ok(self.simulator.ask(&inputs, &self.outputs, kept, said)?)
     }
 }
 

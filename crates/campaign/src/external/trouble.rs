@@ -45,8 +45,9 @@ pub(super) enum Trouble {
     Repeated { output: String },
     /// An output is in the answer that is not declared.
     Unknown { output: String },
-    /// An output is not a finite number.
-    NotFinite { output: Option<String>, value: String },
+    /// An output is not a finite number. With it those of the declared outputs, in their order, that are infinite: nothing may leave
+    /// such a run out.
+    NotFinite { output: Option<String>, value: String, infinite: Vec<Option<f64>> },
     /// The answer has both outputs and an error, or neither.
     OutputsOrError,
     /// The simulator says that the run failed.
@@ -80,6 +81,33 @@ impl Trouble {
             | Self::NotAFile { .. }
             | Self::NotJson { .. }
             | Self::NotJsonFile { .. } => false,
+        }
+    }
+
+    /// The declared outputs, in their order, that the run has although it failed, which are infinite; empty if it has none at all.
+    pub(super) fn infinite(&self) -> &[Option<f64>] {
+        match self {
+            Self::NotFinite { infinite, .. } => infinite,
+            Self::Input { .. }
+            | Self::Start(_)
+            | Self::Files(_)
+            | Self::Timeout { .. }
+            | Self::Stopped
+            | Self::Ended { .. }
+            | Self::Closed { .. }
+            | Self::TooLong { .. }
+            | Self::Early { .. }
+            | Self::OutOfTurn { .. }
+            | Self::NoFile
+            | Self::NotAFile { .. }
+            | Self::NotJson { .. }
+            | Self::NotJsonFile { .. }
+            | Self::Missing { .. }
+            | Self::Repeated { .. }
+            | Self::Unknown { .. }
+            | Self::OutputsOrError
+            | Self::Error { .. }
+            | Self::Panicked { .. } => &[],
         }
     }
 
@@ -181,7 +209,7 @@ impl Trouble {
                     shown(output.as_bytes(), 80)
                 ),
             ),
-            Self::NotFinite { output, value } => {
+            Self::NotFinite { output, value, .. } => {
                 let of = output
                     .map_or("an output".to_owned(), |output| format!("the output `{output}`"));
                 (

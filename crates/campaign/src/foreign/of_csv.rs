@@ -3,7 +3,10 @@
 use std::{fs::File, io::Read, path::Path, sync::Arc};
 
 use super::{Columns, ForeignError, places, status};
-use crate::{blank_lines::BlankLines, failure::OK};
+use crate::{
+    blank_lines::BlankLines,
+    failure::{Failure, OK},
+};
 
 /// Rows of a CSV file that are looked at together.
 const TOGETHER: usize = 1 << 14;
@@ -86,7 +89,8 @@ pub(super) fn scan_csv(
                     format!("line {line}, column {:?}: {cell:?} is not a number", there[*place]);
                 ForeignError { path: path.to_owned(), problem }
             })?;
-            numbers.push(number.filter(|_| ended || column >= measured.len()));
+            let is_taken = |x: &f64| ended || column >= measured.len() || Failure::has_number(*x);
+            numbers.push(number.filter(is_taken));
         }
         if some.first().is_some_and(|numbers| numbers.len() == TOGETHER) {
             look(&some);

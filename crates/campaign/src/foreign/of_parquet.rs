@@ -11,7 +11,7 @@ use std::{fs::File, path::Path};
 
 use super::{Columns, ForeignError, places, status};
 use crate::{
-    failure::OK,
+    failure::{Failure, OK},
     stored::{read, said},
 };
 
@@ -99,7 +99,8 @@ pub(super) fn scan_parquet(
             };
             let texts = read(texts, rows).map_err(failed)?;
             for (row, _) in texts.iter().enumerate().filter(|(_, text)| !is_ok(text)) {
-                numbers[..measured.len()].iter_mut().for_each(|numbers| numbers[row] = None);
+                let numbers = numbers[..measured.len()].iter_mut().map(|numbers| &mut numbers[row]);
+                numbers.for_each(|number| *number = number.filter(|x| Failure::has_number(*x)));
             }
         }
         look(&numbers);

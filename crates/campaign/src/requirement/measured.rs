@@ -60,13 +60,14 @@ impl Measured {
     }
 
     /// The number of a run that has these in its [`columns`](Self::columns), in their order; none if it lacks one. It may be infinite, and
-    /// keeps no bound then.
+    /// keeps no bound then. A length is infinite if one of them is, whatever the others are.
     #[must_use]
     pub fn of(&self, numbers: &[Option<f64>]) -> Option<f64> {
         let first = || numbers.first().copied().flatten();
         let number = match self.how {
             How::Itself => first(),
             How::Absolute => first().map(f64::abs),
+            How::Length if numbers.iter().flatten().any(|x| x.is_infinite()) => Some(f64::INFINITY),
             // Without overflow: a length of 1e300 is one.
             How::Length => numbers.iter().try_fold(0.0, |sum, x| Some(libm::hypot(sum, (*x)?))),
         };

@@ -240,7 +240,7 @@ impl Requirement {
 }
 
 impl Bound {
-    /// Whether a number keeps it. One that is infinite keeps none, whatever its sign: a study counts such a run as failed.
+    /// Whether a number keeps it. One that is infinite keeps none, whatever its sign.
     #[must_use]
     pub fn is_kept(self, x: f64) -> bool {
         x.is_finite() && self.excess(x) <= 0.0

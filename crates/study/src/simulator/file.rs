@@ -2,8 +2,11 @@
 
 use gyradius_campaign::{Requirement, Until};
 use gyradius_dispersion::{MassPropertiesLaw, ModelKind, ModelParameters};
-use serde::{Deserialize, Serialize};
-use std::{collections::BTreeMap, path::PathBuf};
+use serde::{
+    Deserialize, Deserializer, Serialize,
+    de::{SeqAccess, Visitor, value::SeqAccessDeserializer},
+};
+use std::{collections::BTreeMap, fmt, path::PathBuf};
 
 use crate::{
     ScenarioError,
@@ -43,6 +46,7 @@ const LOOK_EVERY: u64 = 256;
 pub(super) struct SimulationFile {
     /// In the place of a command: which function of the calling program it is, in words.
     pub(super) function: Option<String>,
+    #[serde(default, deserialize_with = "command")]
     pub(super) command: Option<Vec<String>>,
     /// Filled in for a command.
     pub(super) per_run: Option<bool>,
@@ -54,6 +58,31 @@ pub(super) struct SimulationFile {
     pub(super) files_sha256: Option<BTreeMap<String, String>>,
     #[serde(default)]
     pub(super) outputs: Vec<OutputFile>,
+}
+
+/// The words of a command. Whoever writes it as in a shell is shown how it is written here.
+fn command<'de, D: Deserializer<'de>>(value: D) -> Result<Option<Vec<String>>, D::Error> {
+    struct Command;
+
+    impl<'de> Visitor<'de> for Command {
+        type Value = Option<Vec<String>>;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str(
+                "a list of the program and its arguments, such as [\"python3\", \"simulator.py\"]",
+            )
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, words: A) -> Result<Self::Value, A::Error> {
+            Deserialize::deserialize(SeqAccessDeserializer::new(words)).map(Some)
+        }
+
+        fn visit_unit<E>(self) -> Result<Self::Value, E> {
+            Ok(None)
+        }
+    }
+
+    value.deserialize_any(Command)
 }
 
 impl SimulationFile {

@@ -1,8 +1,10 @@
 //! Where the runs of a simulator fail: runs that failed have no outputs, but what they drew.
 
-use super::{folder, quantity, scenario, uniform};
-use crate::{Options, write_report};
+use gyradius_campaign::{ForeignTable, Judgement, RunInputs, SimulatorFunction};
 use std::fs;
+
+use super::{SimulatorReplay, folder, quantity, scenario, uniform};
+use crate::{AnyScenario, Options, put_together, write_report};
 
 #[test]
 fn a_campaign_tells_where_its_runs_fail() {
@@ -26,5 +28,59 @@ fn a_campaign_tells_where_its_runs_fail() {
         }
         write_report(&out, None, true).unwrap();
         assert_eq!(fs::read_to_string(out.join("report.md")).unwrap(), page);
+    }
+}
+
+/// Runs that answer with an infinite number, among runs that answer with none: the former count although failed runs are left out, in a
+/// study, in one of shards, in its report made again, and in its tables judged by themselves; and each can be replayed.
+#[test]
+fn infinite_answers_are_not_left_out() {
+    let folder = folder();
+    let required = "\n[[requirements]]\nname = \"near\"\nquantity = \"abs(y)\"\nat_most = 2.0\nprobability = 0.95\nconfidence = 0.9\nfailed_runs = \"left-out\"\n";
+    let command = "command = [\"sh\", \"answer.sh\"]\ntimeout_s = 60.0\n";
+    let text = (uniform() + required).replace(command, "function = \"infinite at times\"\n");
+    // 21 answers of each kind.
+    let answer = |run: &RunInputs<'_>| {
+        let y = match run.run() % 33 {
+            5 => f64::INFINITY,
+            6 => f64::NEG_INFINITY,
+            7 => f64::NAN,
+            8 => return Err("no licence".to_owned()),
+            _ => run.input("x").ok_or("no x")?,
+        };
+        Ok(vec![("y".to_owned(), y)])
+    };
+    let scenario = scenario(&text, folder.path())
+        .with_runs(21 * 33)
+        .unwrap()
+        .with_function(SimulatorFunction::new(answer))
+        .unwrap();
+    let whole = folder.path().join("whole");
+    scenario.study(&Options::to(whole.clone()), &|_| {}, &|_| {}).unwrap();
+    let shards = folder.path().join("shards");
+    let any = AnyScenario::Simulator(Box::new(scenario.clone()));
+    for shard in ["2/2", "1/2"] {
+        let options = Options::to(shards.clone());
+        any.run_shard(&options, shard.parse().unwrap(), &|_| {}, &|_| {}).unwrap();
+    }
+    put_together(&shards, &Options::default(), &|_| {}).unwrap();
+    for out in [&whole, &shards] {
+        let summary = fs::read_to_string(out.join("summary.json")).unwrap();
+        let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+        let judged: Judgement = serde_json::from_value(summary["requirements"][0].clone()).unwrap();
+        assert_eq!((judged.runs_infinite(), judged.failures()), (42, 42), "{summary}");
+        assert_eq!((judged.runs(), judged.counted()), (21 * 33, 21 * 31));
+        let page = fs::read(out.join("report.md")).unwrap();
+        write_report(out, None, true).unwrap();
+        assert_eq!(fs::read(out.join("report.md")).unwrap(), page);
+        let runs = fs::read_dir(out.join("runs")).unwrap().next().unwrap().unwrap().path();
+        let table = ForeignTable::open(&runs).unwrap();
+        let of_table = Judgement::of_table(&[judged.requirement().clone()], &table).unwrap();
+        assert_eq!(of_table, [judged]);
+        for run in [5, 6, 7, 8] {
+            let mut replay = SimulatorReplay::new(&scenario, None, run).unwrap();
+            replay.hold_against(out).unwrap();
+            assert!(replay.to_string().contains("failed: "), "{replay}");
+        }
     }
 }

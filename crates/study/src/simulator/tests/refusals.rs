@@ -20,6 +20,8 @@ fn refusals_name_their_key() {
         r#"
         timeout_s = 60.0 | timeout_s = 0.0 | simulation.timeout_s
         ["sh", "answer.sh"] | [] | simulation.command
+        ["sh", "answer.sh"] | "sh answer.sh" | simulation.command: invalid type: string "sh answer.sh", expected a list of the program and its arguments, such as ["python3", "simulator.py"]
+        ["sh", "answer.sh"] | ["sh", 3] | simulation.command[2]: invalid type: integer `3`, expected a string
         timeout_s = 60.0 | folder = "/no/such" | simulation.folder
         name = "y" | name = "x" | simulation.outputs
         name = "y" | name = "run" | simulation.outputs
