@@ -5,6 +5,7 @@ use std::fmt;
 use crate::{
     Format, Gap, GapKind,
     body::shortened,
+    holder::is_body,
     xml::{Node, Tree},
 };
 
@@ -36,6 +37,14 @@ pub enum CompilerDoubt {
         /// The first of them, as it is called in the file.
         body: String,
     },
+    /// Bodies of an MJCF file have an `<inertial>` without `pos`, with which MuJoCo loads nothing.
+    Unplaced {
+        /// The first of them, as it is called in the file.
+        body: String,
+    },
+    /// An MJCF file has `coordinate="global"`. MuJoCo no longer loads such a file, and took places and axes for those of the
+    /// world before.
+    Global,
     /// The file includes others, whose compiler counts for this one too.
     Included,
 }
@@ -54,6 +63,14 @@ impl fmt::Display for CompilerDoubt {
             Self::Replicated { body } => write!(
                 f,
                 "\"{body}\" stands in <replicate>: MuJoCo makes several bodies of it, which all have the same numbers"
+            ),
+            Self::Unplaced { body } => write!(
+                f,
+                "the <inertial> of \"{body}\" has no pos, which MuJoCo demands: it does not load the file as it is"
+            ),
+            Self::Global => f.write_str(
+                "the file has coordinate=\"global\", which MuJoCo no longer loads: its places and axes are read here as those of \
+                 the bodies, and were those of the world",
             ),
             Self::Included => f.write_str(
                 "the files that this file includes are not read: MuJoCo does not use the masses and inertias as they are \
@@ -74,7 +91,17 @@ pub(crate) fn doubts(tree: &Tree<'_>, format: Format, gaps: &[Gap]) -> Vec<Compi
             let body = replicated.find(|node| node.name() == "body");
             let body = body.map(|body| body.attribute("name").unwrap_or("unnamed"));
             let replicated = body.map(|body| CompilerDoubt::Replicated { body: shortened(body) });
-            let all = raised.chain(replicated);
+            let unplaced = tree.all("inertial").filter(|node| {
+                node.parent().is_some_and(|body| is_body(body, format))
+                    && node.attribute("pos").is_none_or(|pos| pos.trim().is_empty())
+            });
+            let unplaced = unplaced.take(1).filter_map(Node::parent).map(|body| {
+                let body = body.attribute("name").unwrap_or("unnamed");
+                CompilerDoubt::Unplaced { body: shortened(body) }
+            });
+            let global = said(tree, "coordinate").filter(|(_, told)| *told == "global");
+            let all = raised.chain(replicated).chain(unplaced);
+            let all = all.chain(global.map(|_| CompilerDoubt::Global));
             all.chain(includes.then_some(CompilerDoubt::Included)).collect()
         }
         Format::Urdf => {

@@ -789,7 +789,8 @@ fn what_overrides_the_inertias_is_what_mujoco_believes() {
 #[test]
 fn what_mujoco_may_change_is_told() {
     // Checked with MuJoCo 4.0.0: a mass of 1 kg comes out as 2 kg with boundmass="2" of an MJCF and of a URDF file, as 5 kg
-    // with settotalmass="5" of a URDF file and of an included one, and as 1 kg where the attribute is 0.
+    // with settotalmass="5" of a URDF file and of an included one, and as 1 kg where the attribute is 0. It loads no file with
+    // coordinate="global", or without pos, or with an empty one.
     let inertial = "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/><geom size='.1'/>";
     let mjcf = |more: &str| {
         format!("<mujoco>{more}<worldbody><body name='b'>{inertial}</body></worldbody></mujoco>")
@@ -823,6 +824,14 @@ fn what_mujoco_may_change_is_told() {
             ),
             &[],
         ),
+        ("r.xml", mjcf("").replace(" pos='0 0 0'", ""), &["\"b\" has no pos"]),
+        ("r.xml", mjcf("").replace("pos='0 0 0'", "pos=' '"), &["\"b\" has no pos"]),
+        (
+            "r.xml",
+            mjcf("<compiler coordinate='local'/><default><inertial mass='1'/></default>"),
+            &[],
+        ),
+        ("r.xml", mjcf("<compiler coordinate='global'/>"), &["coordinate=\"global\""]),
         ("r.urdf", urdf("fusestatic='true'"), &[]),
         ("r.urdf", urdf("settotalmass='5' boundmass='2'"), &["settotalmass=\"5\"", "boundmass"]),
         ("r.urdf", urdf("inertiafromgeom='true'"), &["inertiafromgeom=\"true\""]),

@@ -49,8 +49,9 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)], looks: &[u64]) 
     let mut field = Field::new(&across, &up, ["runs that count", shares.trim_end()]);
     for (i, (model, judgement)) in models.iter().enumerate() {
         let estimates = judgement.convergence();
-        let corner =
-            |e: &ConvergencePoint, by: f64, share: f64| format!("{} {}", px(x(e) + by), y(share));
+        let corner = |e: &ConvergencePoint, by: f64, share: f64| {
+            format!("{} {}", px((x(e) + by).clamp(0.0, ACROSS)), y(share))
+        };
         // The interval of a single number of runs is a bar, for a band would have no width.
         let sides: &[f64] = if estimates.len() == 1 { &[-5.0, 5.0] } else { &[0.0] };
         let edge = |share: fn(&Interval) -> f64| {

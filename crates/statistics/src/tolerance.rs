@@ -86,7 +86,9 @@ impl Acceptance {
     /// Which of `values` values, besides `failed` runs without one, bound the share p with confidence c.
     pub fn tolerance(&self, side: ToleranceSide, values: u64, failed: u64) -> Tolerance {
         let runs = values.saturating_add(failed);
-        ranks(self, side, [values, failed], || 1.0 - self.consumers_risk(runs))
+        let level = self.confidence().level();
+        // What was allowed has a risk of 1 − c at most: only the difference from 1 rounds below c.
+        ranks(self, side, [values, failed], || (1.0 - self.consumers_risk(runs)).max(level))
     }
 }
 

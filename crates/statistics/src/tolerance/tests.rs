@@ -145,7 +145,7 @@ proptest! {
             let blocks = (upper.unwrap_or(values + 1) - lower.unwrap_or(0)) as usize;
             let sum = |blocks: usize| masses[..blocks].iter().sum::<f64>();
             prop_assert!((sum(blocks) - confidence).abs() < 1e-11, "{side:?}");
-            prop_assert!(confidence >= level - 1e-12 && sum(blocks - 1) < level + 1e-9);
+            prop_assert!(confidence >= level && sum(blocks - 1) < level + 1e-9);
         }
     }
 
