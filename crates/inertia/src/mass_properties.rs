@@ -455,14 +455,15 @@ pub(crate) mod tests {
             };
             let sides = sides.map(f64::from);
             let own = crate::Shape::solid_box(sides).unwrap().of_mass(1.0).unwrap();
-            let check = |found: Result<MassProperties, MassPropertiesError>, mass: i32| {
+            // The last bit of the smallest numbers may be lost, and grows with a body that is made of such a one.
+            let check = |found: Result<MassProperties, MassPropertiesError>, mass: i32, grown: i32| {
                 let largest = exact(own.inertia().matrix().amax(), mass + 2 * size);
                 match found {
                     Ok(body) => {
                         prop_assert_eq!(body.mass_kg(), power(mass));
                         let expected = own.inertia().matrix().map(|x| exact(x, mass + 2 * size));
                         let off = (body.inertia().matrix() - expected).amax();
-                        prop_assert!(largest >= f64::MIN_POSITIVE && off <= 5e-324, "{}", off);
+                        prop_assert!(largest >= f64::MIN_POSITIVE && off <= exact(5e-324, grown.max(0)), "{}", off);
                         let sides_m = body.equivalent_box().unwrap().sizes_m();
                         // The order of the axes does not matter here, and near equal ones turn.
                         let mut found = sides_m.map(|x| x / power(size));
@@ -482,13 +483,13 @@ pub(crate) mod tests {
             };
             let shape = crate::Shape::solid_box(sides.map(|x| x * power(size))).unwrap();
             let body = shape.of_mass(power(mass));
-            check(body, mass)?;
+            check(body, mass, 0)?;
             if let Ok(body) = body {
-                check(body.with_mass(power(other)), other)?;
+                check(body.with_mass(power(other)), other, other - mass)?;
                 let dense = body.scaled_density(power(other));
                 let total = mass + other;
                 if (-1022..1024).contains(&total) {
-                    check(dense, total)?;
+                    check(dense, total, other)?;
                 } else {
                     prop_assert!(dense.is_err());
                 }
