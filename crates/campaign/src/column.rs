@@ -44,7 +44,8 @@ pub enum Kind {
 
 impl Column {
     /// The run that a number in the column [`RUN`](Self::RUN) names, if it names one.
-    pub(crate) fn run_named(number: f64) -> Option<u64> {
+    #[must_use]
+    pub fn run_named(number: f64) -> Option<u64> {
         (number.fract() == 0.0 && (0.0..MOST_EXACT).contains(&number)).then_some(number as u64)
     }
 

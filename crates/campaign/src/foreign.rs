@@ -59,14 +59,25 @@ impl ForeignTable {
         let found = fs::metadata(path).map_err(unread)?;
         let origin = || Origin::of(path).map_err(unread);
         if found.is_dir() {
-            let mut files = Vec::new();
+            let (mut files, mut folders) = (Vec::new(), Vec::new());
             for entry in fs::read_dir(path).map_err(unread)? {
-                let file = entry.map_err(unread)?.path();
-                if file.is_file() && file.extension().is_some_and(|end| end == "parquet") {
-                    files.push(file);
+                let there = entry.map_err(unread)?.path();
+                if there.is_dir() && !is_hidden(&there) {
+                    folders.push(there);
+                } else if is_parquet(&there) {
+                    files.push(there);
                 }
             }
             files.sort();
+            folders.sort();
+            if !files.is_empty()
+                && let Some(folder) = folders.iter().find(|folder| holds_parquet(folder))
+            {
+                let below = folder.file_name().unwrap_or_default().display();
+                return Err(failed(format!(
+                    "beside its files it has the folder {below} with Parquet files, which would not be read: judge one folder at a time, or put all files into one"
+                )));
+            }
             let first =
                 files.first().ok_or_else(|| failed("it has no .parquet file; the run tables of a study are in runs/ below its folder, a folder for each model".to_owned()))?;
             let columns = parquet_columns(first)?;
@@ -83,7 +94,7 @@ impl ForeignTable {
             let columns = parquet_columns(path)?;
             return Ok(Self::new(path, files, (Form::Parquet, columns), origin()?));
         }
-        if path.extension().is_some_and(|end| end == "parquet" || end == "pq") {
+        if has_parquet_name(path) {
             return Err(failed("it does not begin as a Parquet file does".to_owned()));
         }
         let text = CsvText::InFile;
@@ -162,8 +173,19 @@ impl ForeignTable {
 
     /// Why nothing can be said of a table without rows.
     pub(crate) fn without_rows(&self) -> ForeignError {
-        let problem = "it has no rows: a row must be a run".to_owned();
+        let problem = match self.counting.group() {
+            1 => "it has no rows: a row must be a run".to_owned(),
+            group => format!(
+                "it has no row that counts: of every {group} runs, which have something in common, the first is judged"
+            ),
+        };
         ForeignError { path: self.path.clone(), problem }
+    }
+
+    /// Why it cannot be judged.
+    #[must_use]
+    pub fn refused(&self, problem: &str) -> ForeignError {
+        ForeignError { path: self.path.clone(), problem: problem.to_owned() }
     }
 
     /// How verdicts count its runs, as the folder of the campaign says that it is in; as independent runs that are looked at once, if it is in
@@ -179,7 +201,7 @@ impl ForeignTable {
         Self { counting, ..self }
     }
 
-    /// Whether it is a run table of a campaign, which begins with `model`, `run` and `status`.
+    /// Whether it is a run table of a campaign, which has the columns `model`, `run` and `status`.
     #[must_use]
     pub fn is_run_table(&self) -> bool {
         status(&self.columns).is_some()
@@ -204,7 +226,8 @@ impl ForeignTable {
     }
 
     /// Looks at the numbers in some columns, all rows in their order, some at a time. Flags are 1 and 0. In a run table of a study, which
-    /// begins with `model`, `run` and `status`, runs that failed have no numbers, not even those that were drawn.
+    /// has the columns `model`, `run` and `status`, runs that failed have no numbers but those that are infinite, not even those that were
+    /// drawn.
     ///
     /// # Errors
     /// It has no such column, a cell in it is no number, or a file cannot be read.
@@ -236,6 +259,27 @@ impl ForeignTable {
     }
 }
 
+/// Whether a file is called as Parquet files are.
+fn has_parquet_name(path: &Path) -> bool {
+    let is = |end: &str| path.extension().is_some_and(|own| own.eq_ignore_ascii_case(end));
+    is("parquet") || is("pq")
+}
+
+/// Whether there is a file that is called so. What is hidden is of programs, such as copies of a file that is being written.
+fn is_parquet(path: &Path) -> bool {
+    has_parquet_name(path) && !is_hidden(path) && path.is_file()
+}
+
+fn is_hidden(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."))
+}
+
+/// Whether a folder has such files, at any depth. What cannot be read has none.
+fn holds_parquet(folder: &Path) -> bool {
+    let files = walkdir::WalkDir::new(folder).into_iter().filter_map(Result::ok);
+    files.into_iter().any(|entry| is_parquet(entry.path()))
+}
+
 /// Where columns are among those that there are.
 fn places<'a>(
     path: &Path,
@@ -256,11 +300,12 @@ fn places<'a>(
     places.map_err(|problem| ForeignError { path: path.to_owned(), problem })
 }
 
-/// Where the status of a run is, in the run table of a study.
+/// Where the status of a run is, in the run table of a study: a table that has `model`, `run` and `status`, in whatever order a copy
+/// has them and whatever else stands before.
 fn status(columns: &[String]) -> Option<usize> {
-    let own = Column::first();
-    let is_own = columns.len() >= own.len() && own.iter().zip(columns).all(|(a, b)| a.name() == b);
-    is_own.then_some(own.len() - 1)
+    let place = |own: &Column| columns.iter().position(|name| name == own.name());
+    let [model, run, status] = Column::first();
+    place(&model).and(place(&run)).and(place(&status))
 }
 
 /// Why a table cannot be read.

@@ -327,8 +327,11 @@ pub(crate) fn read<T: DataType>(
     if levels.is_empty() {
         return Ok(values.into_iter().map(Some).collect());
     }
+    // A value stands at the deepest level, which is beyond 1 in groups that may be missing themselves. Without any value, no level is it.
+    let deepest = levels.iter().copied().max();
     let mut values = values.into_iter();
-    Ok(levels.into_iter().map(|level| if level == 1 { values.next() } else { None }).collect())
+    let value = |level| if Some(level) == deepest { values.next() } else { None };
+    Ok(levels.into_iter().map(value).collect())
 }
 
 /// The cells of a run of a model in a table that was written, by the names of their columns; none if the table does not have

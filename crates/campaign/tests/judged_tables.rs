@@ -7,7 +7,7 @@ use gyradius_campaign::{
 };
 use gyradius_statistics::{Acceptance, Confidence};
 use proptest::prelude::*;
-use std::{fs, path::Path};
+use std::{fs, path::Path, sync::Arc};
 
 use crate::scratch::scratch;
 
@@ -84,6 +84,121 @@ fn failures_are_none_of_success_in_any_file() {
     }
 }
 
+proptest! {
+    /// A copy of a run table says the same, whatever order its columns have and whatever else stands among them: runs that failed count
+    /// as those.
+    #[test]
+    fn a_copy_of_a_run_table_is_one(
+        rows in prop::collection::vec((0..3_i32, prop::bool::weighted(0.2)), 1..50),
+        order in Just(["model", "run", "status", "x", "", "other"]).prop_shuffle(),
+    ) {
+        let cell = |run: usize, column: &str| {
+            let (x, failed) = rows[run];
+            match column {
+                "model" => "m".to_owned(),
+                "status" => if failed { "diverged".to_owned() } else { "ok".to_owned() },
+                "x" => x.to_string(),
+                _ => run.to_string(),
+            }
+        };
+        let row = |run| order.map(|column| cell(run, column)).join(",") + "\n";
+        let text = order.join(",") + "\n" + &(0..rows.len()).map(row).collect::<String>();
+        let table = ForeignTable::read_csv("it".as_ref(), text.as_bytes()).unwrap();
+        let requirement: Requirement = "x <= 1 in 60 % at 80 %".parse().unwrap();
+        let judged = Judgement::of_table(&[requirement], &table).unwrap();
+        let failing = rows.iter().filter(|(x, failed)| *failed || *x > 1).count() as u64;
+        prop_assert_eq!((judged[0].failures(), judged[0].counted()), (failing, rows.len() as u64), "{}", text);
+    }
+
+    /// Numbers of a column in groups that may be missing themselves, at any depth, stand in their rows.
+    #[test]
+    fn nested_columns_are_in_their_rows(
+        required in prop::collection::vec(any::<bool>(), 1..4),
+        rows in prop::collection::vec((0..9_i16, -3..4_i32), 1..80),
+        left_out: bool,
+    ) {
+        use parquet::{
+            basic::{Repetition, Type as Physical},
+            data_type::DoubleType,
+            file::writer::SerializedFileWriter,
+            schema::types::Type,
+        };
+        let of = |required: bool| if required { Repetition::REQUIRED } else { Repetition::OPTIONAL };
+        let names = ["x", "a", "b", "c"];
+        let deepest = required.iter().filter(|required| !**required).count() as i16;
+        let mut field = Type::primitive_type_builder(names[required.len() - 1], Physical::DOUBLE)
+            .with_repetition(of(required[required.len() - 1]))
+            .build()
+            .unwrap();
+        for depth in (0..required.len() - 1).rev() {
+            field = Type::group_type_builder(names[depth])
+                .with_repetition(of(required[depth]))
+                .with_fields(vec![field.into()])
+                .build()
+                .unwrap();
+        }
+        let schema = Type::group_type_builder("it").with_fields(vec![field.into()]).build().unwrap();
+        let scratch = scratch();
+        let path = scratch.path().join("it.parquet");
+        let file = fs::File::create(&path).unwrap();
+        let mut writer = SerializedFileWriter::new(file, schema.into(), Arc::default()).unwrap();
+        let mut group = writer.next_row_group().unwrap();
+        let levels: Vec<i16> = rows.iter().map(|(level, _)| (*level).min(deepest)).collect();
+        let numbers: Vec<Option<f64>> =
+            levels.iter().zip(&rows).map(|(level, (_, x))| (*level == deepest).then_some(f64::from(*x))).collect();
+        let values: Vec<f64> = numbers.iter().flatten().copied().collect();
+        let mut column = group.next_column().unwrap().unwrap();
+        column.typed::<DoubleType>().write_batch(&values, Some(&levels), None).unwrap();
+        column.close().unwrap();
+        group.close().unwrap();
+        writer.close().unwrap();
+
+        let table = ForeignTable::open(&path).unwrap();
+        let name = names[..required.len()].join(".");
+        let mut read = Vec::new();
+        table.scan(std::slice::from_ref(&name), |columns| read.extend_from_slice(&columns[0])).unwrap();
+        prop_assert_eq!(&read, &numbers);
+        let requirement: Requirement = format!("{name} <= 1 in 60 % at 80 %").parse().unwrap();
+        let requirement =
+            requirement.with_failed_runs(if left_out { FailedRuns::LeftOut } else { FailedRuns::Against });
+        let judged = Judgement::of_table(&[requirement], &table).unwrap();
+        let failing = numbers.iter().filter(|x| x.map_or(!left_out, |x| x > 1.0)).count() as u64;
+        prop_assert_eq!(judged[0].failures(), failing);
+    }
+}
+
+/// A folder is all its Parquet files, however these end; one with more of them below is refused, for they would not be read.
+#[test]
+fn a_folder_is_all_its_files() {
+    let scratch = scratch();
+    let table = |from: u64| {
+        let mut table = Table::new("m", from, vec![Column::number("x", "1", "a number")]).unwrap();
+        (0..10).for_each(|_| table.push(None, [Cell::Number(from as f64)]).unwrap());
+        table
+    };
+    let folder = scratch.path().join("runs");
+    fs::create_dir_all(folder.join("figures")).unwrap();
+    fs::write(folder.join("figures/it.svg"), "").unwrap();
+    for (place, name) in ["a.parquet", "b.pq", "c.PARQUET", "d.Pq"].into_iter().enumerate() {
+        table(10 * place as u64)
+            .write_parquet(fs::File::create(folder.join(name)).unwrap())
+            .unwrap();
+    }
+    fs::write(folder.join(".half.parquet"), "PAR1").unwrap();
+    let requirement: [Requirement; 1] = ["x <= 15 in 60 % at 80 %".parse().unwrap()];
+    let judged = Judgement::of_table(&requirement, &ForeignTable::open(&folder).unwrap()).unwrap();
+    assert_eq!((judged[0].runs(), judged[0].failures()), (40, 20));
+    let below = folder.join("part=1/more");
+    fs::create_dir_all(&below).unwrap();
+    assert!(ForeignTable::open(&folder).is_ok());
+    table(40).write_parquet(fs::File::create(below.join("e.parquet")).unwrap()).unwrap();
+    let refused = ForeignTable::open(&folder).unwrap_err().to_string();
+    assert!(
+        refused.contains("beside its files it has the folder part=1 with Parquet files"),
+        "{refused}"
+    );
+}
+
 /// Runs without inputs.
 struct Nothing;
 
@@ -152,6 +267,13 @@ proptest! {
         judging.look(&table);
         let judged = judging.finish(&Runs::from(table.clone())).unwrap().remove(0);
         prop_assert_eq!(judged.runs_infinite(), infinite);
+        let is_infinite = |run: &&u64| {
+            let [x, y] = runs[**run as usize].unwrap_or_default();
+            place.map_or(x.is_infinite() || y.is_infinite(), |place| [x, y][place].is_infinite())
+        };
+        let all: Vec<u64> = (0..runs.len() as u64).collect();
+        let first: Vec<u64> = all.iter().filter(is_infinite).copied().take(10).collect();
+        prop_assert_eq!(judged.first_infinite(), first);
         prop_assert_eq!(judged.failures(), beyond + infinite + if left_out { 0 } else { without });
         prop_assert_eq!(judged.counted(), runs.len() as u64 - if left_out { without } else { 0 });
 
@@ -216,7 +338,10 @@ fn infinite_numbers_are_failures() {
                 Judgement::of_table(&[requirement.with_failed_runs(left_out)], &table).unwrap();
             assert_eq!((judged[0].failures(), judged[0].counted()), (1, 99), "{bound} {cell}");
             let told = judged[0].to_string();
-            assert!(told.contains("1 run whose number is infinite counts against it"), "{told}");
+            assert!(
+                told.contains("1 run whose number is infinite counts against it: 0\n"),
+                "{told}"
+            );
             assert!(!told.contains("without a number"), "{told}");
             let read: Judgement =
                 serde_json::from_str(&serde_json::to_string(&judged[0]).unwrap()).unwrap();

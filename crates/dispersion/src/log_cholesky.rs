@@ -11,6 +11,7 @@ use crate::second_moment_matrix::{body, inertia_covariance, inertia_map};
 use crate::semidefinite::{Covariance, CovarianceError, of_rows};
 use crate::{EntryMoments, KnownMoments, ModelParameterError, ModelParameters};
 
+mod closed;
 mod wide;
 
 /// Draws farther out than this many deviations have probability 1e-349.
@@ -134,7 +135,8 @@ impl LogCholeskyGaussian {
     ///
     /// # Algorithm
     /// Newton's steps with the derivative of the linearised map, from [`linearised`](Self::linearised). Where these lead
-    /// nowhere, as with wide spreads, Newton's method along a path from no spread to all of it.
+    /// nowhere, as with wide spreads, Newton's method along a path from no spread to all of it. Where a share of the spread has
+    /// no law and the path ends there, the closed form.
     ///
     /// # Errors
     /// The mean is no body or one on the boundary, or no such law is found: the widest spreads have none.
@@ -159,12 +161,14 @@ impl LogCholeskyGaussian {
             mean += start.inverse * gap;
             covariance += start.inverse * gaps * start.inverse.transpose();
         }
-        let none = LogCholeskyGaussianError::NoMatch;
-        let (mean, covariance) = wide::matched(&start, moments).ok_or(none)?;
-        let law = Self::new(mean.into(), covariance).map_err(|_| none)?;
-        let (gap, gaps) = gaps_of(&law);
-        let is_close = gap.amax() <= tolerances.0 && gaps.amax() <= tolerances.1;
-        if is_close { Ok(law) } else { Err(none) }
+        let close = |(mean, covariance): (SVector<f64, 6>, SMatrix<f64, 6, 6>)| {
+            let law = Self::new(mean.into(), covariance).ok()?;
+            let (gap, gaps) = gaps_of(&law);
+            (gap.amax() <= tolerances.0 && gaps.amax() <= tolerances.1).then_some(law)
+        };
+        let along_the_path = wide::matched(&start, moments).and_then(close);
+        let law = along_the_path.or_else(|| closed::matched(moments).and_then(close));
+        law.ok_or(LogCholeskyGaussianError::NoMatch)
     }
 
     /// Means of d₁, d₂, d₃, s₁₂, s₂₃, s₁₃.

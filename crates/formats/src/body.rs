@@ -24,16 +24,6 @@ pub(crate) fn entry_of(name: &str) -> Option<usize> {
     NAMES.iter().position(|known| *known == plain)
 }
 
-/// Whether a name is as good as that of a product of inertia, as programs call it that have a sign of their own: `Pxy`, `Lxy`.
-pub(crate) fn is_like_product(name: &str) -> bool {
-    const PAIRS: [&str; 12] =
-        ["xy", "xz", "yz", "yx", "zx", "zy", "12", "13", "23", "21", "31", "32"];
-    const WORDS: [&str; 9] =
-        ["i", "j", "l", "p", "poi", "prod", "product", "products", "productofinertia"];
-    let word = PAIRS.iter().find_map(|pair| name.strip_suffix(pair));
-    entry_of(name).is_none() && word.is_some_and(|word| WORDS.contains(&word))
-}
-
 /// What the products of inertia in a file are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Products {

@@ -147,6 +147,15 @@ pub enum FileProblem {
         /// The heading, shortened.
         heading: String,
     },
+    /// A column of a number with a minus or a plus in its heading.
+    #[error(
+        "column {heading:?}: a heading must not have a sign; a line \"# products = integrals\" above the header, or \
+         a column products, says which sign products have"
+    )]
+    Sign {
+        /// The heading, shortened.
+        heading: String,
+    },
     /// Its grammar is broken.
     #[error("malformed: {message}")]
     Malformed {

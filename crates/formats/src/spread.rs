@@ -4,12 +4,18 @@ use crate::units::squeezed;
 
 /// What is written of standard deviations, wherever it stands, and in words of their own.
 const MARKS: [&str; 5] = ["sigma", "percent", "%", "σ", "±"];
-const WORDS: [&str; 12] = [
+const WORDS: [&str; 18] = [
+    "sd",
     "std",
     "stdev",
     "stddev",
+    "stderr",
     "dev",
     "deviation",
+    "var",
+    "variance",
+    "cov",
+    "cv",
     "unc",
     "uncertainty",
     "tol",

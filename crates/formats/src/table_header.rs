@@ -4,14 +4,13 @@ use crate::{
     FileProblem,
     body::{entry_of, shortened},
     error::Refusal,
+    heading_sign::without_sign,
+    product_heading::is_unread_product,
     rows::{Field, Rows, is_comment},
     spread,
     ten_heading::TenHeading,
     text::Text,
-    units::{
-        BadUnit, Dimension, SharedUnit, Unit, UnitProblem, is_unread_product, longest_name,
-        squeezed,
-    },
+    units::{BadUnit, Dimension, SharedUnit, Unit, UnitProblem, longest_name, squeezed},
 };
 
 /// Columns that are looked for: the six entries, the mass, the name, and what the products are.
@@ -22,7 +21,7 @@ pub(crate) const FIELDS: [&str; 9] =
     ["ixx", "iyy", "izz", "ixy", "ixz", "iyz", "mass", "name", "products"];
 
 /// The column of a heading, and the unit that follows its name, or why that is none. What follows and is no unit
-/// may make another column of it: `ixx_sigma`.
+/// may make another column of it: `ixx_sigma`. A sign is left out, for whoever reads the column to refuse.
 fn heading(text: &str) -> Option<(usize, Result<Unit, BadUnit>)> {
     // Longer texts are none, and would be searched for names for long.
     if text.len() > 200 {
@@ -31,6 +30,8 @@ fn heading(text: &str) -> Option<(usize, Result<Unit, BadUnit>)> {
     if let Some(word) = column_of(&squeezed(text)).filter(|column| *column > MASS) {
         return Some((word, Ok(Unit::none())));
     }
+    let unsigned = without_sign(text);
+    let text = unsigned.as_deref().unwrap_or(text);
     // A mass centre is no mass.
     if TenHeading::of(text).is_some_and(|heading| heading.centre.is_some()) {
         return None;
@@ -93,6 +94,10 @@ pub(crate) fn unit_below(
 ) -> Result<Unit, BadUnit> {
     let written = field.of(text.as_str());
     let bad = |problem| BadUnit { text: written.to_owned(), problem, is_certain: true };
+    // A dash alone says that nothing is stated.
+    if without_sign(written).is_some() && written.contains(char::is_alphanumeric) {
+        return Err(bad(UnitProblem::Sign));
+    }
     Unit::of(written, dimension).map_err(bad)
 }
 
@@ -146,7 +151,12 @@ fn header(text: &Text, row: &[Field], below: Option<&[Field]>) -> Result<Option<
         let Some((column, in_heading)) = found else { continue };
         let name = FIELDS[column];
         let refuse = |problem: String| text.malformed(field.start, problem);
-        let bad = |bad: BadUnit| refuse(bad.of(field.of(text.as_str()), name).to_string());
+        let heading = field.of(text.as_str());
+        if column <= MASS && without_sign(heading).is_some() {
+            let heading = shortened(heading);
+            return Err(text.refuse(field.start, FileProblem::Sign { heading }));
+        }
+        let bad = |bad: BadUnit| refuse(bad.of(heading, name).to_string());
         let in_heading = in_heading.map_err(bad)?;
         let in_row = below.as_ref().and_then(|units| units.get(index).cloned());
         let in_row = in_row.unwrap_or(Ok(Unit::none())).map_err(bad)?;

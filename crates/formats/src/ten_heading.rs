@@ -2,6 +2,7 @@
 
 use crate::{
     body::entry_of,
+    heading_sign::without_sign,
     parts::heading::{Group, VALUES, group, is_spread},
     spread,
     units::{BadUnit, Dimension, Unit, longest_name},
@@ -27,12 +28,15 @@ pub(crate) struct TenHeading {
 }
 
 impl TenHeading {
-    /// Nothing if a heading is of none of the ten, or of how uncertain one is.
+    /// Nothing if a heading is of none of the ten, or of how uncertain one is. A sign is left out, for whoever reads
+    /// the column to refuse.
     pub(crate) fn of(text: &str) -> Option<Self> {
         // Longer texts are none, and would be searched for names for long.
         if text.len() > 200 || spread::is_marked(text) || is_spread(text) {
             return None;
         }
+        let unsigned = without_sign(text);
+        let text = unsigned.as_deref().unwrap_or(text);
         let ((place, centre, is_letter), tail) = longest_name(text, known)?;
         let unit = tail.unit(Self::dimension(place, centre))?;
         // A letter that a word begins with is not the mass.

@@ -6,6 +6,7 @@ use crate::{
     FileBodyError, FileProblem, Format, InertiaFile, UnitError,
     body::{ENTRIES, Number, shortened},
     error::Refusal,
+    heading_sign::without_sign,
     parts::heading::VALUES,
     rows::Field,
     table_header::{Header, MASS, find_header, one_unit, unit_below},
@@ -238,6 +239,10 @@ impl TenColumns {
         heading: TenHeading,
         below: Result<Unit, BadUnit>,
     ) -> Result<(), TenTableError> {
+        if without_sign(name).is_some() {
+            let heading = shortened(name);
+            return Err(TenTableError::File(FileProblem::Sign { heading }));
+        }
         if let Some(centre) = heading.centre {
             let (kind, first) = self.centre.get_or_insert_with(|| (centre, shortened(name)));
             if *kind != centre {

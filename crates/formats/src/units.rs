@@ -1,6 +1,6 @@
 //! Units in tables: what stands after the name of a number in a heading, and how much it is in SI.
 
-use crate::body::{is_like_product, shortened};
+use crate::body::shortened;
 
 /// Units of mass, and what they are in kg.
 const MASSES: [(&str, f64); 7] = [
@@ -151,12 +151,6 @@ pub(crate) fn longest_name<T>(
     })
 }
 
-/// Whether a heading begins with the name of a product that does not tell its sign.
-pub(crate) fn is_unread_product(heading: &str) -> bool {
-    let like = |name: &str| is_like_product(name).then_some(());
-    longest_name(heading, like).is_some_and(|((), tail)| tail.is_apart())
-}
-
 /// What marks that a unit follows.
 const MARKS: [char; 8] = ['[', '(', '{', '/', ',', ':', ';', '='];
 
@@ -259,6 +253,12 @@ pub enum UnitProblem {
         /// The other.
         second: String,
     },
+    /// With a minus or a plus before it.
+    #[error(
+        "it must not have a sign: a line \"# products = integrals\" above the header, or a column products, says \
+         which sign products have"
+    )]
+    Sign,
 }
 
 /// What may stand between the letters of a name, and between the parts of a unit.

@@ -145,14 +145,14 @@ pub(crate) fn judged<C: Subject>(
     for (judging, runs) in judging.into_iter().zip(runs) {
         let model = runs.model();
         let judged = judging.finish(runs)?;
-        let worst = judged.iter().flat_map(Judgement::worst).map(|worst| worst.run).collect();
+        let worst = judged.iter().flat_map(named).map(|(run, _)| run).collect();
         let (drawn, rounding) = without_rounding(scenario.drawn_inputs(summary, model));
         let moves = |column: &&String| !rounding.iter().any(|input| input.column == **column);
         let inputs: Vec<String> = inputs.iter().filter(moves).cloned().collect();
         let found = unusual(&drawn, &worst, runs)?;
         all.extend(judged.into_iter().map(|judgement| {
             let of_run = |run: u64| found.iter().find(|unusual| unusual.run == run).cloned();
-            let unusual = judgement.worst().iter().filter_map(|worst| of_run(worst.run)).collect();
+            let unusual = named(&judgement).filter_map(|(run, _)| of_run(run)).collect();
             Judged { model: model.to_owned(), judgement, unusual }
         }));
         let requirements = requirements_of(scenario, model);
@@ -197,8 +197,8 @@ pub(crate) fn sections(scenario: &impl Subject, head: &Head) -> Vec<Section> {
             );
             let failures = format!("{} of {}", judgement.failures(), judgement.counted());
             let cell = PageCell::from(Text::from(failures)).line(Text::default().quiet(may));
-            let without = without_number(judgement).into_iter();
-            without.fold(cell, |cell, words| cell.line(Text::default().quiet(words)))
+            let apart = without_number(judgement).into_iter().chain(infinite(judgement));
+            apart.fold(cell, |cell, words| cell.line(Text::default().quiet(words)))
         })
         .numbers("bound that the share keeps", |judged| {
             let limits = judged.judgement.requirement().bound();
@@ -232,8 +232,8 @@ pub(crate) fn sections(scenario: &impl Subject, head: &Head) -> Vec<Section> {
     let mut notes = vec![Text::from(rests)];
     if head.requirements.iter().any(|judged| judged.judgement.runs_without_number() > 0) {
         notes.push(Text::from(
-            "A run has no number if it failed, or if it has no value of the quantity, as there is no time of a contact that does not \
-             happen. Such runs count against a requirement, unless the scenario leaves them out of it: shares are then of the \
+            "A run has no number if it failed without an infinite one, or if it has no value of the quantity, as there is no time of \
+             a contact that does not happen. Such runs count against a requirement, unless the scenario leaves them out of it: shares are then of the \
              runs that have a number.",
         ));
     }
@@ -361,10 +361,10 @@ fn convergence(head: &Head) -> Section {
 
 /// The worst runs, each with the command, or the call, that does it again.
 fn worst(scenario: &impl Subject, head: &Head) -> Option<Section> {
-    let all: Vec<(&Judged, &RunBeyond)> = head
+    let all: Vec<(&Judged, u64, Option<&RunBeyond>)> = head
         .requirements
         .iter()
-        .flat_map(|judged| judged.judgement.worst().iter().map(move |run| (judged, run)))
+        .flat_map(|judged| named(&judged.judgement).map(move |(run, beyond)| (judged, run, beyond)))
         .collect();
     type Again = fn(&str, u64) -> String;
     let (to_see_it, again): (_, Again) = match scenario.function_name() {
@@ -376,16 +376,19 @@ fn worst(scenario: &impl Subject, head: &Head) -> Option<Section> {
         }),
     };
     let table = PageTable::of(&all)
-        .groups(|(judged, _)| {
+        .groups(|(judged, ..)| {
             format!("{}, {}", judged.judgement.requirement().name(), judged.model)
         })
-        .numbers("run", |(_, run)| run.run.to_string())
-        .numbers("value", |(judged, run)| {
-            beside(run.value, 6, judged.judgement.requirement().bound())
+        .numbers("run", |(_, run, _)| run.to_string())
+        .numbers("value", |(judged, _, beyond)| {
+            let limits = judged.judgement.requirement().bound();
+            beyond.map_or_else(|| "infinite".to_owned(), |run| beside(run.value, 6, limits))
         })
-        .numbers("beyond the limit by", |(_, run)| significant(run.excess, 4))
-        .words("unusual in what it drew", |(judged, run)| told_unusual(judged, run.run))
-        .words(to_see_it, |(judged, run)| Text::default().code(again(&judged.model, run.run)));
+        .numbers("beyond the limit by", |(.., beyond)| {
+            beyond.map_or_else(|| "–".to_owned(), |run| significant(run.excess, 4))
+        })
+        .words("unusual in what it drew", |(judged, run, _)| told_unusual(judged, *run))
+        .words(to_see_it, |(judged, run, _)| Text::default().code(again(&judged.model, *run)));
     let reading = "Unusual is what lies at least two standard deviations from the mean of all runs of the model, in brackets by \
                    how many: the three most unusual numbers of what the run drew, which need not be the reason.";
     let first_flights = "Only first flights are judged: these are the worst of the first flights of the vehicles, and a later flight may be worse.";
@@ -445,6 +448,19 @@ fn without_number(judgement: &Judgement) -> Option<String> {
         FailedRuns::LeftOut => "left out",
     };
     (without > 0).then(|| format!("{without} of {runs} have no number: {fate}"))
+}
+
+/// How many runs have an infinite number, if some have.
+fn infinite(judgement: &Judgement) -> Option<String> {
+    let (infinite, runs) = (judgement.runs_infinite(), judgement.runs());
+    (infinite > 0)
+        .then(|| format!("{infinite} of {runs} have an infinite number: counted against it"))
+}
+
+/// The runs that are named one by one, the worst first: those whose number is infinite, and others by how far they are beyond the bound.
+fn named(judgement: &Judgement) -> impl Iterator<Item = (u64, Option<&RunBeyond>)> {
+    let infinite = judgement.first_infinite().iter().map(|run| (*run, None));
+    infinite.chain(judgement.worst().iter().map(|run| (run.run, Some(run))))
 }
 
 /// The bound that a share keeps, rounded outwards, in the digits that tell it from the limits.

@@ -60,23 +60,38 @@ impl Fleet {
         .map(|(name, meaning)| Column::new(name, Kind::Integer, meaning).required())
     }
 
-    /// The table with the first flight of each vehicle counted, if it is a run table of vehicles and flights that a study wrote and nothing says
-    /// whether the flights of a vehicle have something in common: first flights have not.
+    /// The table with the first flight of each vehicle counted, if it is a run table of vehicles and flights that a study wrote, or a copy of
+    /// some of its columns and rows, and nothing says whether the flights of a vehicle have something in common: first flights have not.
     ///
     /// # Errors
-    /// The table cannot be read.
+    /// The table cannot be read, or its columns `run`, `vehicle` and `flight` are not those of a study.
     pub fn first_flights(table: ForeignTable) -> Result<ForeignTable, ForeignError> {
         let [vehicle, flight] = Self::columns().map(|column| column.name().to_owned());
+        let names = [Column::RUN.to_owned(), vehicle, flight];
         let has = |name: &String| table.columns().contains(name);
-        if table.campaign().is_some() || !table.is_run_table() || !has(&vehicle) || !has(&flight) {
+        if table.campaign().is_some() || !names.iter().all(has) {
             return Ok(table);
         }
-        let mut last = 0.0;
-        table.scan_beside(&[], &[flight], |columns| {
-            last = columns.iter().flatten().flatten().copied().fold(last, f64::max);
-        })?;
-        let counting = Counting::new(table.counting().looks(), (last as u64).saturating_add(1));
-        Ok(table.counted(counting))
+        let mut seen = SeenFlights::default();
+        let read = table.scan_beside(&[], &names, |columns| {
+            let [runs, vehicles, flights] = columns else { return };
+            for ((run, vehicle), flight) in runs.iter().zip(vehicles).zip(flights) {
+                seen.add([*run, *vehicle, *flight]);
+            }
+        });
+        match (read, seen.each()) {
+            (Ok(()), Some(each)) => {
+                let counting = Counting::new(table.counting().looks(), each);
+                Ok(table.counted(counting))
+            }
+            (Ok(()), None) if table.is_run_table() => Err(table.refused(
+                "its columns \"run\", \"vehicle\" and \"flight\" do not belong together as in the run table of a study, where the run \
+                 is the vehicle times the flights of each plus the flight, all from 0: it is not known which flights are the first",
+            )),
+            (Err(error), _) if table.is_run_table() => Err(error),
+            // Columns of another program that have the same names.
+            (Ok(()) | Err(_), _) => Ok(table),
+        }
     }
 
     /// What a run has in them.
@@ -100,10 +115,91 @@ impl Fleet {
     }
 }
 
+/// How many flights each vehicle makes, as the rows of a table say that may be some of all.
+#[derive(Debug, Default)]
+struct SeenFlights {
+    /// As a vehicle behind the first says.
+    each: Option<u64>,
+    /// At least so many.
+    least: u64,
+    unclear: bool,
+}
+
+impl SeenFlights {
+    /// Adds a row: its run, vehicle and flight.
+    fn add(&mut self, row: [Option<f64>; 3]) {
+        self.unclear |= self.added(row).is_none();
+    }
+
+    /// The same; none if the three do not belong together.
+    fn added(&mut self, row: [Option<f64>; 3]) -> Option<()> {
+        let whole = |place: usize| Column::run_named(row[place]?);
+        let (run, vehicle, flight) = (whole(0)?, whole(1)?, whole(2)?);
+        self.least = self.least.max(flight.checked_add(1)?);
+        let before = run.checked_sub(flight)?;
+        if vehicle == 0 {
+            return (before == 0).then_some(());
+        }
+        let each = before / vehicle;
+        let is_same = self.each.is_none_or(|known| known == each);
+        self.each = Some(each);
+        (before.is_multiple_of(vehicle) && is_same).then_some(())
+    }
+
+    /// The flights of each vehicle. Of the first vehicle alone, as many as there are; none if the rows contradict each other.
+    fn each(&self) -> Option<u64> {
+        let each = self.each.unwrap_or(self.least);
+        (!self.unclear && self.least <= each).then_some(each)
+    }
+}
+
 impl fmt::Display for Fleet {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let many = |n: u64, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
         let (vehicles, flights) = (many(self.vehicles, "vehicle"), many(self.flights, "flight"));
         write!(f, "{vehicles} of {flights} each")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Any rows of any fleet, in any order, say how many flights each vehicle makes, those of the first vehicle alone at most as many;
+        /// a row of another fleet contradicts them.
+        #[test]
+        fn rows_say_how_many_flights_there_are(
+            vehicles in 1..60_u64,
+            flights in 1..40_u64,
+            chosen in prop::collection::vec(any::<prop::sample::Index>(), 1..50),
+            other in 1..40_u64,
+            wrong in prop::sample::select(vec![f64::NAN, -1.0, 0.5, 1e300]),
+        ) {
+            let row = |fleet: Fleet, run: u64| {
+                let (vehicle, flight) = fleet.place(run);
+                [run, vehicle, flight].map(|number| Some(number as f64))
+            };
+            let fleet = Fleet::new(vehicles, flights);
+            let mut seen = SeenFlights::default();
+            let runs: Vec<u64> = chosen.iter().map(|index| index.index((vehicles * flights) as usize) as u64).collect();
+            runs.iter().for_each(|run| seen.add(row(fleet, *run)));
+            let least = runs.iter().map(|run| run % flights + 1).max().unwrap();
+            let is_known = runs.iter().any(|run| *run >= flights);
+            prop_assert_eq!(seen.each(), Some(if is_known { flights } else { least }));
+            let other = Fleet::new(vehicles + 1, other);
+            seen.add(row(other, other.runs() - 1));
+            if is_known && other.flights != flights {
+                prop_assert_eq!(seen.each(), None);
+            }
+            for place in 0..3 {
+                let mut seen = SeenFlights::default();
+                let mut of_none = row(fleet, runs[0]);
+                of_none[place] = Some(wrong).filter(|x| !x.is_nan());
+                seen.add(of_none);
+                prop_assert_eq!(seen.each(), None);
+            }
+        }
     }
 }

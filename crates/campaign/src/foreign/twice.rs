@@ -74,7 +74,8 @@ impl ForeignTable {
         let mut twice = None;
         for (file, path) in self.files.iter().enumerate() {
             let look = |model: &str, number: Option<f64>| {
-                let Some(run) = number.and_then(Column::run_named) else { return };
+                let run = number.and_then(Column::run_named);
+                let Some(run) = run.filter(|_| !model.trim().is_empty()) else { return };
                 if !seen.contains_key(model) {
                     seen.insert(model.to_owned(), Seen::default());
                 }

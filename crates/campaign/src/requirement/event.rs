@@ -23,11 +23,11 @@ impl Event {
         &self.quantity
     }
 
-    /// By how much the runs of a block are the event: 0 and more are. NaN of a run without a finite number, most often because
-    /// it failed.
+    /// By how much the runs of a block are the event: 0 and more are. NaN of a run without a number, most often because
+    /// it failed. A number that is infinite is the event, or infinitely far from it, as its sign says.
     #[must_use]
     pub fn excesses(&self, block: &Table) -> Vec<f64> {
-        let numbers = self.quantity.finite_numbers(block).into_iter();
+        let numbers = self.quantity.numbers(block).into_iter();
         numbers.map(|x| x.map_or(f64::NAN, |x| 0.0 - self.bound.excess(x))).collect()
     }
 }
@@ -77,7 +77,10 @@ mod tests {
             limit in -1e3..1e3_f64,
             kind in 0..3_u8,
             absolute: bool,
-            numbers in prop::collection::vec(prop::option::of(-1e3..1e3_f64), 1..40),
+            numbers in prop::collection::vec(prop::option::of(prop_oneof![
+                8 => -1e3..1e3_f64,
+                1 => prop::sample::select(vec![f64::INFINITY, f64::NEG_INFINITY]),
+            ]), 1..40),
         ) {
             let quantity = if absolute { "abs(x)" } else { "x" };
             let text = match kind {
@@ -89,7 +92,8 @@ mod tests {
             prop_assert_eq!(event.to_string(), text);
             let mut table = Table::new("m", 0, vec![Column::number("x", "1", "a number")]).unwrap();
             for x in &numbers {
-                let failure = x.is_none().then(|| Failure::new("failed", "failed"));
+                let failed = !x.is_some_and(f64::is_finite);
+                let failure = failed.then(|| Failure::new("failed", "failed"));
                 table.push(failure, [x.map_or(Cell::Null, Cell::Number)]).unwrap();
             }
             for (excess, x) in event.excesses(&table).into_iter().zip(numbers) {

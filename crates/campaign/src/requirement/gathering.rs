@@ -49,6 +49,8 @@ pub(crate) struct Tally {
     pub(super) without: u64,
     /// Runs whose number is infinite, which count and keep no bound.
     pub(super) infinite: u64,
+    /// The first of them.
+    pub(super) first_infinite: Vec<u64>,
     /// Runs whose number is beyond the bound.
     pub(super) beyond: u64,
     /// The worst first.
@@ -206,6 +208,11 @@ impl Tally {
         }
     }
 
+    fn keep_first_infinite(&mut self) {
+        self.first_infinite.sort_unstable();
+        self.first_infinite.truncate(WORST);
+    }
+
     /// Runs that have a finite number.
     fn finite(&self) -> u64 {
         self.runs - self.without - self.infinite
@@ -219,6 +226,8 @@ impl Tally {
         };
         if !value.is_finite() {
             self.infinite += 1;
+            self.first_infinite.push(run);
+            self.keep_first_infinite();
             return;
         }
         let excess = bound.excess(value);
@@ -237,6 +246,8 @@ impl Tally {
         self.runs += other.runs;
         self.without += other.without;
         self.infinite += other.infinite;
+        self.first_infinite.extend(other.first_infinite);
+        self.keep_first_infinite();
         self.beyond += other.beyond;
         self.prefixes.merge(&other.prefixes);
         self.worst.extend(other.worst);

@@ -39,6 +39,9 @@ pub struct Judgement {
     /// Runs whose number is infinite, which count as failures and are never left out.
     #[serde(default, skip_serializing_if = "is_zero")]
     runs_infinite: u64,
+    /// The first of them, which are worse than all others.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    first_infinite: Vec<u64>,
     /// Runs whose number is beyond the bound.
     runs_beyond: u64,
     /// Runs that count, and those of them that do not keep the requirement.
@@ -102,6 +105,7 @@ impl Judgement {
             runs: tally.runs,
             runs_without_number: tally.without,
             runs_infinite: tally.infinite,
+            first_infinite: tally.first_infinite.clone(),
             runs_beyond: tally.beyond,
             counted,
             failures,
@@ -141,11 +145,6 @@ impl Judgement {
         };
         let vehicles = Some(VehiclesKeeping { vehicles: whole, keeping, share_interval });
         Ok(Self { vehicles, ..self })
-    }
-
-    /// The worst runs, to be called by other numbers.
-    pub(super) fn worst_mut(&mut self) -> &mut [RunBeyond] {
-        &mut self.worst
     }
 
     /// All runs.
@@ -226,6 +225,17 @@ impl Judgement {
         self.runs_infinite
     }
 
+    /// The first of these, by their numbers, from 0. They are worse than all of [`worst`](Self::worst).
+    #[must_use]
+    pub fn first_infinite(&self) -> &[u64] {
+        &self.first_infinite
+    }
+
+    /// The numbers of the runs that are named one by one, to be called by others.
+    pub(super) fn named_runs_mut(&mut self) -> impl Iterator<Item = &mut u64> {
+        self.worst.iter_mut().map(|run| &mut run.run).chain(&mut self.first_infinite)
+    }
+
     /// Share of the runs that count that keep it.
     #[must_use]
     pub fn share(&self) -> Option<f64> {
@@ -304,7 +314,7 @@ impl Judgement {
         }
     }
 
-    /// The worst runs, the worst first.
+    /// The worst runs of those whose numbers are finite, the worst first.
     #[must_use]
     pub fn worst(&self) -> &[RunBeyond] {
         &self.worst
@@ -353,7 +363,13 @@ impl fmt::Display for Judgement {
                 _ => ["whose numbers are infinite", "count"],
             };
             let unit = self.unit(runs);
-            writeln!(f, "  infinite     {runs} {unit} {numbers} {count} against it")?;
+            let first: Vec<String> = self.first_infinite.iter().map(u64::to_string).collect();
+            let more = if first.len() as u64 == runs { "" } else { ", …" };
+            let first = first.join(", ");
+            writeln!(
+                f,
+                "  infinite     {runs} {unit} {numbers} {count} against it: {first}{more}"
+            )?;
         }
         match self.tolerance {
             Some(bound) => writeln!(

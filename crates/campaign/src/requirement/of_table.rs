@@ -110,8 +110,8 @@ impl Judgement {
 
     /// Calls the worst runs by their numbers in the table, where all of these are whole; rows they were before.
     fn number_runs(judged: &mut [Self], table: &ForeignTable) {
-        let worst = judged.iter().flat_map(Self::worst);
-        let rows: BTreeSet<u64> = worst.map(|run| run.run).collect();
+        let named = judged.iter_mut().flat_map(Self::named_runs_mut);
+        let rows: BTreeSet<u64> = named.map(|run| *run).collect();
         let mut numbers = BTreeMap::new();
         let mut first = 0;
         let read = table.scan(&[Column::RUN.to_owned()], |columns| {
@@ -124,8 +124,8 @@ impl Judgement {
             first = end;
         });
         if read.is_ok() && numbers.len() == rows.len() {
-            for run in judged.iter_mut().flat_map(Self::worst_mut) {
-                run.run = numbers[&run.run];
+            for run in judged.iter_mut().flat_map(Self::named_runs_mut) {
+                *run = numbers[run];
             }
         }
     }

@@ -99,8 +99,22 @@ fn bad_parameters_are_named() {
     assert!(error.to_string().contains("a plate"), "{error}");
 }
 
+/// A law about a body without products of inertia, with coordinates that scatter about as much as this spread.
+fn scattered(seed: u64, spread: f64, roots: [f64; 3], scale: i32) -> LogCholeskyGaussian {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let [a, b, c] = roots.map(|root| root * 10_f64.powi(scale));
+    let diagonal = [b * b + c * c, a * a + c * c, a * a + b * b];
+    let inertia = InertiaMatrix::from_entries(diagonal, [0.0; 3]).unwrap();
+    let inertia = Inertia::try_from(inertia).unwrap();
+    let normal = |_, _| rand_distr::StandardNormal.sample(&mut rng);
+    let factor = SMatrix::<f64, 6, 6>::from_fn(normal) * (spread / 6_f64.sqrt());
+    let units = SMatrix::<f64, 6, 6>::from_diagonal(&[1.0, 1.0, 1.0, b, c, c].into());
+    let covariance = units * factor * factor.transpose() * units;
+    LogCholeskyGaussian::about(&inertia, (covariance + covariance.transpose()) * 0.5).unwrap()
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// The moments of any law, narrow or wide, are those of a law that is found.
     #[test]
@@ -110,17 +124,7 @@ proptest! {
         roots in prop::array::uniform3(0.3..3.0_f64),
         scale in -6..7_i32,
     ) {
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let [a, b, c] = roots.map(|root| root * 10_f64.powi(scale));
-        let diagonal = [b * b + c * c, a * a + c * c, a * a + b * b];
-        let inertia = InertiaMatrix::from_entries(diagonal, [0.0; 3]).unwrap();
-        let inertia = Inertia::try_from(inertia).unwrap();
-        let normal = |_, _| rand_distr::StandardNormal.sample(&mut rng);
-        let factor = SMatrix::<f64, 6, 6>::from_fn(normal) * (spread / 6_f64.sqrt());
-        let units = SMatrix::<f64, 6, 6>::from_diagonal(&[1.0, 1.0, 1.0, b, c, c].into());
-        let covariance = units * factor * factor.transpose() * units;
-        let law = LogCholeskyGaussian::about(&inertia, (covariance + covariance.transpose()) * 0.5).unwrap();
-        let expected = law.entry_moments();
+        let expected = scattered(seed, spread, roots, scale).entry_moments();
         let found = LogCholeskyGaussian::matched(&expected).unwrap().entry_moments();
         for e in 0..6 {
             let off = (found.mean()[e] - expected.mean()[e]).abs();
@@ -128,5 +132,46 @@ proptest! {
         }
         let off = (found.covariance() - expected.covariance()).amax();
         prop_assert!(off <= 1.1e-9 * expected.covariance().amax());
+    }
+
+    /// No other law has its moments: the closed form is the law itself.
+    #[test]
+    fn the_closed_form_is_the_law(
+        seed in any::<u64>(),
+        spread in -4.0..-0.3_f64,
+        roots in prop::array::uniform3(0.3..3.0_f64),
+        scale in -6..7_i32,
+    ) {
+        let law = scattered(seed, 10_f64.powf(spread), roots, scale);
+        let (mean, covariance) = closed::matched(&law.entry_moments()).unwrap();
+        let deviations = law.covariance().diagonal().map(f64::sqrt);
+        for i in 0..6 {
+            prop_assert!((mean[i] - law.mean[i]).abs() <= 1e-6 * deviations[i], "{}", mean - law.mean);
+            for j in 0..6 {
+                let off = (covariance[(i, j)] - law.covariance()[(i, j)]).abs();
+                prop_assert!(off <= 1e-6 * deviations[i] * deviations[j], "{i} {j}: {off:e}");
+            }
+        }
+    }
+}
+
+/// Shares of a covariance of which a law has all and none has four fifths.
+#[test]
+fn a_law_is_found_beyond_shares_that_none_has() {
+    let seeds = [
+        (4386539613286760363, 0.4390457070013577, 2.6907043422498744),
+        (1098402476913542184, 0.38671484887045016, 2.728902859113257),
+        (13461146951602428446, 0.511024165292831, 2.848528196597181),
+        (3560821332655516640, 0.5687447951820931, 2.307600093190639),
+        (13527301636834058879, 0.5577936046482627, 1.9544017838156194),
+    ];
+    for (seed, spread, root) in seeds {
+        let law = scattered(seed, spread, [0.3, 0.3, root], 0);
+        let moments = law.entry_moments();
+        let found = LogCholeskyGaussian::matched(&moments).unwrap();
+        assert!((found.covariance() - law.covariance()).amax() < 1e-9 * law.covariance().amax());
+        let share = EntryMoments::new(moments.mean(), moments.covariance() * 0.8).unwrap();
+        let found = LogCholeskyGaussian::matched(&share);
+        assert_eq!(found, Err(LogCholeskyGaussianError::NoMatch));
     }
 }

@@ -2,8 +2,10 @@
 
 use crate::{
     body::entry_of,
+    heading_sign::without_sign,
+    product_heading::is_unread_product,
     spread,
-    units::{BadUnit, Dimension, Unit, is_unread_product, longest_name, squeezed},
+    units::{BadUnit, Dimension, Unit, longest_name, squeezed},
 };
 
 /// The ten numbers, as messages call them.
@@ -77,6 +79,8 @@ pub(crate) enum Heading {
     Unit(&'static str, BadUnit),
     /// It looks like a product of inertia, and its name does not tell its sign.
     Product,
+    /// A number of the ten or a standard deviation, with a sign in the heading.
+    Signed,
     /// It looks like a standard deviation, and is none.
     NoDeviation,
     Other,
@@ -148,16 +152,22 @@ impl Heading {
         (bad.is_certain || !is_held).then_some((*field, bad))
     }
 
-    /// Whether it must be a product, and none of the columns holds one that is read.
+    /// Whether it must be a product, and one of the three is not in a column that is read.
     pub(crate) fn is_lost_product(&self, beside: &[Self]) -> bool {
-        let is_product = |other: &Self| matches!(other, Self::Column(Column::Value(7.., _)));
-        *self == Self::Product && !beside.iter().any(is_product)
+        let is_read = |product: usize| {
+            let holds = |other: &Self| matches!(other, Self::Column(Column::Value(i, _)) if *i == product);
+            beside.iter().any(holds)
+        };
+        *self == Self::Product && !(7..10).all(is_read)
     }
 
     pub(crate) fn of(text: &str) -> Self {
         // Longer texts are none.
         if text.len() > 200 {
             return Self::Other;
+        }
+        if let Some(found) = without_sign(text).and_then(|plain| quantity(&plain)) {
+            return if matches!(found, Self::Column(_)) { Self::Signed } else { found };
         }
         if let Some(found) = word(&squeezed(text)).map(Self::Column).or_else(|| quantity(text)) {
             return found;
@@ -176,9 +186,27 @@ impl Heading {
     }
 }
 
-/// Whether a heading speaks of how uncertain one of the ten numbers is, as `mass_std`.
+/// Whether a heading speaks of how uncertain one of the ten numbers is, as `mass_std`, `I_xx sd` and `dmass`.
 pub(crate) fn is_spread(text: &str) -> bool {
-    spread::has_word(text) && spread::words(&text.to_lowercase()).any(|word| group(word).is_some())
+    let text = text.to_lowercase();
+    let words: Vec<&str> = spread::words(&text).collect();
+    let is_number = |words: &[&str]| group(&words.concat()).is_some();
+    let names_number = words.chunks(1).any(is_number) || words.windows(2).any(is_number);
+    (spread::has_word(&text) && names_number) || is_difference(&text)
+}
+
+/// Whether it is the name of one of the ten after what stands for a difference or an uncertainty: `dmass`, `Δmass`, `u(mass)`.
+fn is_difference(text: &str) -> bool {
+    let of = |name: &str| {
+        let rests = ["delta", "d", "δ", "∆", "u"].iter().filter_map(|mark| name.strip_prefix(mark));
+        rests.filter_map(group).find(|group| group.1 == 1)
+    };
+    let Some((group, tail)) = longest_name(text, of) else { return false };
+    match tail.unit(group.dimension()) {
+        Some(Ok(_)) => true,
+        Some(Err(bad)) => bad.is_certain,
+        None => false,
+    }
 }
 
 fn word(plain: &str) -> Option<Column> {
@@ -212,6 +240,10 @@ fn quantity(text: &str) -> Option<Heading> {
             Some(Heading::Unit(deviation(group, Scale::Unit(None)), bad))
         }
         (Ok(unit), Group(first, 1)) => Some(Heading::Column(Column::Value(first, stated(unit)))),
+        // `mass product of inertia xy` is no mass.
+        (Err(bad), Group(..7, 1)) if !bad.is_certain && is_unread_product(text) => {
+            Some(Heading::Product)
+        }
         (Err(bad), Group(first, 1)) if !spread::is_marked(text) && !is_spread(text) => {
             Some(Heading::Unit(VALUES[first], bad))
         }

@@ -134,6 +134,10 @@ impl PartsTable {
                 return refuse(PartsProblem::NoUnit { heading, other });
             }
             match column {
+                Heading::Signed => {
+                    let heading = shortened(heading);
+                    return refuse(PartsProblem::File(FileProblem::Sign { heading }));
+                }
                 Heading::NoDeviation => {
                     return refuse(PartsProblem::Deviation { heading: shortened(heading) });
                 }

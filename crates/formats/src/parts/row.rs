@@ -162,6 +162,7 @@ impl Cells<'_> {
             Heading::Column(Column::Name | Column::Parent | Column::Products | Column::Point)
             | Heading::Unit(..)
             | Heading::Product
+            | Heading::Signed
             | Heading::NoDeviation
             | Heading::Other => None,
         };

@@ -70,9 +70,20 @@ fn infinite_answers_are_not_left_out() {
         let judged: Judgement = serde_json::from_value(summary["requirements"][0].clone()).unwrap();
         assert_eq!((judged.runs_infinite(), judged.failures()), (42, 42), "{summary}");
         assert_eq!((judged.runs(), judged.counted()), (21 * 33, 21 * 31));
-        let page = fs::read(out.join("report.md")).unwrap();
+        let page = fs::read_to_string(out.join("report.md")).unwrap();
+        assert!(page.contains("42 of 693 have an infinite number: counted against it"), "{page}");
+        // The first of them is the worst run, with the words to see it again.
+        let worst = &page[page.find("The worst runs").unwrap()..];
+        assert!(worst.contains("| 5 | infinite | – |"), "{worst}");
+        assert!(worst.contains("study.replay(5, model="), "{worst}");
+        assert_eq!(judged.first_infinite(), [5, 6, 38, 39, 71, 72, 104, 105, 137, 138]);
+        let told = judged.to_string();
+        assert!(
+            told.contains("count against it: 5, 6, 38, 39, 71, 72, 104, 105, 137, 138, …"),
+            "{told}"
+        );
         write_report(out, None, true).unwrap();
-        assert_eq!(fs::read(out.join("report.md")).unwrap(), page);
+        assert_eq!(fs::read_to_string(out.join("report.md")).unwrap(), page);
         let runs = fs::read_dir(out.join("runs")).unwrap().next().unwrap().unwrap().path();
         let table = ForeignTable::open(&runs).unwrap();
         let of_table = Judgement::of_table(&[judged.requirement().clone()], &table).unwrap();
