@@ -153,6 +153,35 @@ fn a_report_meanwhile_is_no_end() {
     assert_eq!(content(&scratch.path("it")), content(&scratch.path("whole")));
 }
 
+/// Runs that a rule looked at until it was killed are judged as runs that were looked at, by whoever goes on without a rule.
+#[test]
+fn runs_of_a_rule_that_was_killed_stay_looked_at() {
+    let scratch = Scratch::new();
+    fs::write(scratch.path("it.toml"), scenario("", 10.0, 0.99)).unwrap();
+    let study = |more: &[&str]| {
+        let study = ["study", "--scenario", "it.toml", "--out", "it", "--threads", "1"];
+        scratch.command(&[&study[..], more].concat())
+    };
+    let rule = ["--until", "share within 0.0001 %", "--look-every", "200", "--runs", "1000000"];
+    let mut child = study(&rule).spawn().unwrap();
+    let blocks = scratch.path("it/.gyradius/campaign/proposed");
+    let some = || fs::read_dir(&blocks).is_ok_and(|files| files.count() > 1);
+    while !some() && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(!scratch.path("it/summary.json").exists());
+    let looks = || summary(&scratch.path("it"))["requirements"][0]["looks"].clone();
+    for runs in ["40000", "40500"] {
+        done(study(&["--runs", runs, "--force"]), 0);
+        assert_eq!(looks(), "often");
+    }
+    // Of another seed nobody has looked at any.
+    study(&["--runs", "1000", "--seed", "7", "--force"]).output().unwrap();
+    assert_eq!(looks(), Value::Null);
+}
+
 /// Of vehicles, whole vehicles are looked at, and their first flights count.
 #[test]
 fn vehicles_are_looked_at_as_a_whole() {

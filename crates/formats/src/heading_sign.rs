@@ -1,12 +1,15 @@
 //! Signs in headings: what they would say of the numbers below them is not read.
 
 /// What is written for minus and plus.
-const SIGNS: [char; 13] =
-    ['-', '+', '−', '–', '—', '‐', '‑', '‒', '⁻', '⁺', '﹣', '－', '＋'];
+const SIGNS: [char; 13] = ['-', '+', '−', '–', '—', '‐', '‑', '‒', '⁻', '⁺', '﹣', '－', '＋'];
 
 /// A heading with blanks in place of its signs; nothing if it has none. What stands between two words is no sign:
 /// `I-xy`, `kg-m²`, `Ixy - kg m²`.
 pub(crate) fn without_sign(heading: &str) -> Option<String> {
+    // Longer texts are none, and would be searched for long.
+    if heading.len() > 200 {
+        return None;
+    }
     let mut plain = String::with_capacity(heading.len());
     let mut has_sign = false;
     for (at, c) in heading.char_indices() {

@@ -61,16 +61,17 @@ fn holds_product(heading: &str) -> bool {
     words.iter().enumerate().any(|(at, word)| {
         let before = words[..at].last().map_or("", String::as_str);
         let after = words.get(at + 1).map_or("", String::as_str);
-        let in_letters = LETTERS.iter().any(|pair| match (word.strip_suffix(pair), word.strip_prefix(pair)) {
-            (Some(""), _) => speaks_of_products || is_letter(before),
-            (Some(name), _) => {
-                let is_in_order = LETTERS[..3].contains(pair);
-                let is_symbol = SYMBOLS.contains(&name) || (is_in_order && is_letter(name));
-                is_symbol || name.ends_with('i') || is_of_products(name)
-            }
-            (None, Some(rest)) => is_integral || is_of_products(rest),
-            (None, None) => word.strip_prefix('i').is_some_and(|rest| rest.starts_with(pair)),
-        });
+        let in_letters =
+            LETTERS.iter().any(|pair| match (word.strip_suffix(pair), word.strip_prefix(pair)) {
+                (Some(""), _) => speaks_of_products || is_letter(before),
+                (Some(name), _) => {
+                    let is_in_order = LETTERS[..3].contains(pair);
+                    let is_symbol = SYMBOLS.contains(&name) || (is_in_order && is_letter(name));
+                    is_symbol || name.ends_with('i') || is_of_products(name)
+                }
+                (None, Some(rest)) => is_integral || is_of_products(rest),
+                (None, None) => word.strip_prefix('i').is_some_and(|rest| rest.starts_with(pair)),
+            });
         let in_digits = DIGITS.iter().any(|pair| match word.strip_suffix(pair) {
             Some("") => {
                 ["i", "j"].contains(&before) || WORDS.contains(&before) || WORDS.contains(&after)

@@ -2,6 +2,8 @@
 //!
 //! Read by hand, because a copy that changes single numbers needs the places.
 
+use crate::products_comment::states_products;
+
 /// Where a field stands, its quotes not counted.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Field {
@@ -45,7 +47,7 @@ impl<'a> Rows<'a> {
             if rest.is_empty() {
                 return None;
             }
-            if line.starts_with('#') {
+            if !line.trim().is_empty() && is_comment(line) {
                 self.at = (self.at + line.len() + 1).min(self.text.len());
                 continue;
             }
@@ -106,7 +108,7 @@ impl<'a> Rows<'a> {
 }
 
 pub(crate) fn is_comment(line: &str) -> bool {
-    line.starts_with('#') || line.trim().is_empty()
+    line.starts_with('#') || line.trim().is_empty() || states_products(line)
 }
 
 /// What there is most of in a header; a comma where nothing is.

@@ -95,10 +95,11 @@ pub(crate) fn unit_below(
     let written = field.of(text.as_str());
     let bad = |problem| BadUnit { text: written.to_owned(), problem, is_certain: true };
     // A dash alone says that nothing is stated.
-    if without_sign(written).is_some() && written.contains(char::is_alphanumeric) {
-        return Err(bad(UnitProblem::Sign));
+    let unsigned = without_sign(written).map(|plain| Unit::of(&plain, dimension));
+    match unsigned {
+        Some(Ok(unit)) if !unit.text.is_empty() => Err(bad(UnitProblem::Sign)),
+        _ => Unit::of(written, dimension).map_err(bad),
     }
-    Unit::of(written, dimension).map_err(bad)
 }
 
 /// The units in a row below a header, none where a field is empty: nothing if one of the fields that count

@@ -3,6 +3,7 @@
 
 mod dressings;
 mod encodings;
+mod headings;
 mod mjcf_geoms;
 mod places;
 mod robots;

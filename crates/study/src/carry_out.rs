@@ -42,6 +42,7 @@ fn run_to_the_end<C: Subject>(
         return ended(End { runs: there.runs(), enough: true, first_look });
     }
     let blocks = folder.blocks((begun.0, &begun.1), scenario.runs(), options.force, &threads)?;
+    blocks.looked_at()?;
     let plan = plan(scenario, options, Doing::All);
     to_be_done(&simulations, plan, (&folder, &blocks), say)?;
     same_as_before(scenario, &simulations, (folder.place(), &blocks), &threads)

@@ -5,6 +5,7 @@ use std::{io::Write, path::PathBuf, sync::atomic::AtomicBool};
 
 use super::{
     Folder, FolderError, Problem,
+    area::Area,
     blocks::Blocks,
     hidden::Hidden,
     manifest::{Block, MANIFEST, Manifest, damaged},
@@ -13,7 +14,12 @@ use super::{
     told::{manifest, published},
 };
 use crate::{
-    hash::sha256, identity::Identity, kept::Kept, requirement::Counting, stop::is_stopped, stored,
+    hash::sha256,
+    identity::Identity,
+    kept::Kept,
+    requirement::{Counting, Looks},
+    stop::is_stopped,
+    stored,
     table::Table,
 };
 
@@ -111,16 +117,23 @@ impl Folder<'_> {
         reduced.map_err(|problem| self.failed(problem))
     }
 
-    /// How verdicts count the runs of the complete campaign of an identity that is in the folder; as those that nobody has looked at, if
-    /// there is none.
+    /// How verdicts count the runs of the campaign of an identity that is in the folder, complete or not; as those that nobody has looked
+    /// at, if there is none.
     ///
     /// # Errors
     /// The folder cannot be read.
     pub fn counting(&self, identity: &Identity) -> Result<Counting, FolderError> {
-        let record =
-            self.hidden.record(self.contents.what).map_err(|problem| self.failed(problem))?.0;
-        let there = manifest(self.hidden.place(), &record, identity);
-        Ok(there.map(|manifest| manifest.counting()).unwrap_or_default())
+        let there = || -> Result<Counting, Problem> {
+            let (place, record) = (self.hidden.place(), self.hidden.record(self.contents.what)?.0);
+            let complete = manifest(place, &record, identity);
+            let complete = complete.map(|manifest| manifest.counting()).unwrap_or_default();
+            let area = Area::of(place);
+            let is_same =
+                area.identity()?.is_some_and(|there| identity.difference(&there).is_none());
+            let is_looked_at = is_same && area.is_looked_at();
+            Ok(if is_looked_at { complete.looked_at(Looks::Often) } else { complete })
+        };
+        there().map_err(|problem| self.failed(problem))
     }
 }
 

@@ -21,6 +21,8 @@ const IDENTITY: &str = "identity.json";
 const RECORD: &str = "record";
 /// A text that tells those who go on how the campaign was begun.
 const MARK: &str = "mark";
+/// Tells that a rule looks at the runs while they are done, whoever goes on with them.
+const LOOKED: &str = "looked";
 
 /// The folder of an unfinished campaign.
 #[derive(Clone, Debug)]
@@ -131,6 +133,16 @@ impl Area {
         is_file.then(|| fs::read_to_string(path).ok())?
     }
 
+    /// Tells that a rule looks at the runs.
+    pub(super) fn tell_looked(&self) -> Result<(), Problem> {
+        self.tell_first(LOOKED, "A rule looks at these runs while they are done.\n")
+    }
+
+    /// Whether a rule looked at the runs, or may have.
+    pub(super) fn is_looked_at(&self) -> bool {
+        fs::symlink_metadata(self.0.join(LOOKED)).is_ok()
+    }
+
     /// The record of those who do all blocks, or of a shard, which only one process at a time holds.
     pub(super) fn record(&self, shard: Option<Shard>) -> Result<(PathBuf, File), Problem> {
         let name = shard.map_or_else(|| RECORD.to_owned(), |s| format!("{RECORD}-{}", s.name()));
@@ -224,7 +236,8 @@ impl Area {
                 disk::remove_folder(&entry.path())?;
             } else {
                 let name = entry.file_name().to_string_lossy().into_owned();
-                if name == MARK || name == IDENTITY || is_record(&name) || name.ends_with(PART) {
+                let is_own = [MARK, LOOKED, IDENTITY].contains(&name.as_str());
+                if is_own || is_record(&name) || name.ends_with(PART) {
                     files.push(entry.path());
                 }
             }

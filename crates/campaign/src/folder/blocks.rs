@@ -440,6 +440,15 @@ impl Blocks {
             .map_err(|error| FolderError { path: self.place.clone(), problem: error.into() })
     }
 
+    /// Tells that a rule looks at the runs while they are done, before it does: verdicts on them count all looks from then on.
+    ///
+    /// # Errors
+    /// That cannot be written.
+    pub fn looked_at(&self) -> Result<(), FolderError> {
+        let told = self.area.tell_looked();
+        told.map_err(|problem| FolderError { path: self.place.clone(), problem })
+    }
+
     /// Removes the traces of a campaign of which no block was finished.
     pub fn abandon(&self) {
         let nothing = self.locked().blocks.iter().all(|block| block.published);

@@ -22,6 +22,12 @@ impl Counting {
         Self { looks, dependent_runs: (group > 1).then_some(group) }
     }
 
+    /// The same of runs that are looked at so often.
+    #[must_use]
+    pub fn looked_at(self, looks: Looks) -> Self {
+        Self { looks, ..self }
+    }
+
     /// How often the runs were looked at.
     #[must_use]
     pub fn looks(self) -> Looks {

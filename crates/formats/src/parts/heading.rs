@@ -155,7 +155,8 @@ impl Heading {
     /// Whether it must be a product, and one of the three is not in a column that is read.
     pub(crate) fn is_lost_product(&self, beside: &[Self]) -> bool {
         let is_read = |product: usize| {
-            let holds = |other: &Self| matches!(other, Self::Column(Column::Value(i, _)) if *i == product);
+            let holds =
+                |other: &Self| matches!(other, Self::Column(Column::Value(i, _)) if *i == product);
             beside.iter().any(holds)
         };
         *self == Self::Product && !(7..10).all(is_read)
