@@ -107,7 +107,7 @@ fn of_vehicles_the_first_flights_are_judged() {
             let said = scratch.run(few).stdout;
             let said = String::from_utf8(said).unwrap();
             // Of 90 vehicles 230 were enough.
-            let more = "more vehicles 140 more vehicles would show that it is met";
+            let more = "  more         140 more vehicles would show that it is met";
             assert_eq!(said.contains(more), of_fleet, "{said}");
             assert!(!said.contains("more runs"), "{said}");
         }

@@ -1,6 +1,6 @@
 //! Headings that look like a product of inertia under a name that does not tell its sign.
 
-use crate::{body::entry_of, parts::heading::is_spread, spread, units::longest_name};
+use crate::{body::entry_of, spread, units::longest_name};
 
 /// The two axes of a product, in letters and in digits.
 const LETTERS: [&str; 6] = ["xy", "xz", "yz", "yx", "zx", "zy"];
@@ -30,7 +30,7 @@ const WORDS: [&str; 15] = [
 ];
 const SHORT_WORDS: [&str; 8] = ["i", "j", "pi", "io", "ig", "icg", "icog", "icom"];
 
-/// Whether a heading that is not read looks like a product of inertia. One that speaks of a deviation does not.
+/// Whether a heading that is neither read nor the name of a deviation looks like a product of inertia.
 pub(crate) fn is_unread_product(heading: &str) -> bool {
     // Longer texts are none, and would be searched for names for long.
     if heading.len() > 200 {
@@ -38,10 +38,7 @@ pub(crate) fn is_unread_product(heading: &str) -> bool {
     }
     let like = |name: &str| is_like_product(name).then_some(());
     longest_name(heading, like).is_some_and(|((), tail)| tail.is_apart())
-        || (!spread::is_marked(heading)
-            && !spread::has_word(heading)
-            && !is_spread(heading)
-            && holds_product(heading))
+        || (!spread::is_marked(heading) && !spread::has_word(heading) && holds_product(heading))
 }
 
 /// Whether a name is as good as that of a product of inertia, as programs call it that have a sign of their own: `Pxy`, `Lxy`.

@@ -82,7 +82,9 @@ fn said(comment: &str) -> Said {
             "+" => return Said::Clear(Products::Integrals),
             "-" | "−" => return Said::Clear(Products::TensorEntries),
             // `-integrals` is tensor entries.
-            _ if value.starts_with(['+', '-', '−']) && (is_key || !known(value).is_empty()) => {
+            signed
+                if signed.starts_with(['+', '-', '−']) && (is_key || !known(signed).is_empty()) =>
+            {
                 return Said::Unclear;
             }
             _ => {}

@@ -5,6 +5,7 @@ use crate::{
     body::{entry_of, shortened},
     error::Refusal,
     heading_sign::without_sign,
+    parts::heading::is_spread,
     product_heading::is_unread_product,
     rows::{Field, Rows, is_comment},
     spread,
@@ -94,12 +95,12 @@ pub(crate) fn unit_below(
 ) -> Result<Unit, BadUnit> {
     let written = field.of(text.as_str());
     let bad = |problem| BadUnit { text: written.to_owned(), problem, is_certain: true };
+    let unsigned = without_sign(written).and_then(|plain| Unit::of(&plain, dimension).ok());
     // A dash alone says that nothing is stated.
-    let unsigned = without_sign(written).map(|plain| Unit::of(&plain, dimension));
-    match unsigned {
-        Some(Ok(unit)) if !unit.text.is_empty() => Err(bad(UnitProblem::Sign)),
-        _ => Unit::of(written, dimension).map_err(bad),
+    if unsigned.is_some_and(|unit| !unit.text.is_empty()) {
+        return Err(bad(UnitProblem::Sign));
     }
+    Unit::of(written, dimension).map_err(bad)
 }
 
 /// The units in a row below a header, none where a field is empty: nothing if one of the fields that count
@@ -174,7 +175,10 @@ fn header(text: &Text, row: &[Field], below: Option<&[Field]>) -> Result<Option<
     }
     let products = columns[3..6].iter().flatten().count();
     if products == 0 {
-        let is_like = |field: &&Field| is_unread_product(field.of(text.as_str()));
+        let is_like = |field: &&Field| {
+            let heading = field.of(text.as_str());
+            !is_spread(heading) && is_unread_product(heading)
+        };
         if let Some(field) = row.iter().find(is_like) {
             let heading = shortened(field.of(text.as_str()));
             return Err(text.refuse(field.start, FileProblem::Product { heading }));

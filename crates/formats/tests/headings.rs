@@ -167,8 +167,6 @@ proptest! {
         between in prop::sample::select(vec![" ", "_", ".", ":", "|", " / ", "$", " - ", "-"]),
     ) {
         let words = [before.as_slice(), &[name.to_owned()], &after].concat();
-        // Before a word of their own, `I_xy` is two.
-        prop_assume!(name != "I_xy" || between != "");
         let table = with(&[&words.join(between)]);
         let [checked, list, ten] = refusals(&table);
         prop_assert!(checked.is_some() && ten.is_some(), "{table}");
@@ -180,7 +178,7 @@ proptest! {
     /// A word that ends in two axes is a word, if nothing else speaks of products.
     #[test]
     fn no_other_word_is_taken_for_a_product(
-        start in "[a-hj-z][a-hj-z]{1,5}",
+        start in "[a-hj-z]{2,6}",
         pair in prop::sample::select(vec!["xy", "xz", "yz", "zx", "_12", " 13", "-23"]),
         end in prop::sample::select(vec!["", "_kg", " [m]", "_area", " of the plane"]),
     ) {
@@ -196,8 +194,7 @@ fn a_sign_in_a_heading_is_refused() {
         ["@N", "@ N", "(@N)", "_@N", "@N [U]", "@ N (U)", "N [@U]", "N (@ U)", "N @U", "N (@)"];
     for sign in ["-", "−", "+", "–", "－"] {
         for form in FORMS {
-            for at in 0..10 {
-                let (name, unit) = TEN[at];
+            for (at, (name, unit)) in TEN.into_iter().enumerate() {
                 let heading = form.replace('@', sign).replace('N', name).replace('U', unit);
                 let table =
                     ten_with(|i| if i == at { heading.clone() } else { TEN[i].0.to_owned() });
@@ -226,8 +223,7 @@ fn a_sign_in_a_heading_is_refused() {
 #[test]
 fn a_dash_between_words_is_no_sign() {
     for dash in ["-", " - ", "_-_", "- "] {
-        for at in 0..10 {
-            let (name, unit) = TEN[at];
+        for (at, (name, unit)) in TEN.into_iter().enumerate() {
             for heading in [
                 format!("{name}{dash}{unit}"),
                 format!("{name}{dash}[{unit}]"),
@@ -260,10 +256,10 @@ fn a_sign_in_the_header_of_an_estimate_is_refused() {
                 .collect();
             std::fs::write(&path, format!("{}\n{}", names.join(","), row.repeat(11))).unwrap();
             match TenMomentsFile::read(&path) {
-                Ok(_) => assert_eq!(sign, ""),
+                Ok(_) => assert!(sign.is_empty()),
                 Err(error) => {
                     let said = error.to_string();
-                    assert!(sign != "" && said.contains("must not have a sign"), "{said}");
+                    assert!(!sign.is_empty() && said.contains("must not have a sign"), "{said}");
                 }
             }
         }

@@ -66,7 +66,9 @@ pub(super) fn scan_parquet(
             | Physical::DOUBLE
             | Physical::BYTE_ARRAY
             | Physical::FIXED_LEN_BYTE_ARRAY => {
-                return Err(wrong("is of texts, dates or decimals, and must be of numbers"));
+                return Err(wrong(
+                    "is of texts, dates or decimals, of numbers of 16 bits, or of no type, and must be of numbers of 32 or 64 bits, whole numbers or flags",
+                ));
             }
         }
     }

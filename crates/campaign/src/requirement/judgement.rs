@@ -331,8 +331,9 @@ impl fmt::Display for Judgement {
         writeln!(f, "  {}", self.line())?;
         if let Verdict::Undecided { if_no_more_fail, at_this_rate } = self.verdict {
             let met = |runs: u64, if_so: &str| {
-                let (unit, label) = (self.unit_of_more(runs), self.unit_of_more(0));
-                let label = format!("more {label}");
+                let unit = self.unit_of_more(runs);
+                // What does not fit into the column of names is told by the sentence.
+                let label = self.vehicles.map_or("more runs", |_| "more");
                 format!("  {label:<12} {runs} more {unit} would show that it is met, {if_so}\n")
             };
             let all = if_no_more_fail.map(|runs| met(runs, "if all of them keep it"));

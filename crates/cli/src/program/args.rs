@@ -611,7 +611,7 @@ pub(crate) struct FragmentArgs {
     #[arg(long, value_enum, default_value_t = BodyArg::Payload)]
     pub(crate) body: BodyArg,
 
-    /// File to write the fragment to [default: standard output]
+    /// File to write the fragment to; - is standard output [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
 
@@ -622,6 +622,13 @@ pub(crate) struct FragmentArgs {
     /// Form of the report
     #[arg(long, value_enum, default_value_t = Form::Text)]
     pub(crate) format: Form,
+}
+
+impl FragmentArgs {
+    /// The file to write to, if not to standard output.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        self.output.as_deref().filter(|path| *path != Path::new("-"))
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]

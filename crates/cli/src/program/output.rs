@@ -36,10 +36,11 @@ pub(crate) fn write(
 ) -> Result<(), String> {
     let pasted = format!("{}\n{fragment}", commented(report));
     let mut said = String::new();
-    if let Some(path) = &arguments.output {
+    let file = arguments.file();
+    if let Some(path) = file {
         said = write_beside(path, &pasted, input, arguments.force)?;
     }
-    match (arguments.format, &arguments.output) {
+    match (arguments.format, file) {
         (Form::Json, _) => print_json(&json().map_err(|error| error.to_string())?),
         (Form::Text, Some(_)) => print(&format!("{report}{said}")),
         (Form::Text, None) => print(&pasted),

@@ -196,10 +196,16 @@ pub(crate) fn is_spread(text: &str) -> bool {
     (spread::has_word(&text) && names_number) || is_difference(&text)
 }
 
-/// Whether it is the name of one of the ten after what stands for a difference or an uncertainty: `dmass`, `Δmass`, `u(mass)`.
+/// Whether it is, in small letters, the name of one of the ten after what stands for a difference or an uncertainty:
+/// `dmass`, `δmass`, `u(mass)`.
 fn is_difference(text: &str) -> bool {
+    const MARKS: [&str; 5] = ["delta", "d", "δ", "∆", "u"];
+    let begins = |c: char| c.is_alphabetic() || c == '∆';
+    if !MARKS.iter().any(|mark| text.trim_start_matches(|c| !begins(c)).starts_with(mark)) {
+        return false;
+    }
     let of = |name: &str| {
-        let rests = ["delta", "d", "δ", "∆", "u"].iter().filter_map(|mark| name.strip_prefix(mark));
+        let rests = MARKS.iter().filter_map(|mark| name.strip_prefix(mark));
         rests.filter_map(group).find(|group| group.1 == 1)
     };
     let Some((group, tail)) = longest_name(text, of) else { return false };
@@ -242,7 +248,9 @@ fn quantity(text: &str) -> Option<Heading> {
         }
         (Ok(unit), Group(first, 1)) => Some(Heading::Column(Column::Value(first, stated(unit)))),
         // `mass product of inertia xy` is no mass.
-        (Err(bad), Group(..7, 1)) if !bad.is_certain && is_unread_product(text) => {
+        (Err(bad), Group(..7, 1))
+            if !bad.is_certain && !is_spread(text) && is_unread_product(text) =>
+        {
             Some(Heading::Product)
         }
         (Err(bad), Group(first, 1)) if !spread::is_marked(text) && !is_spread(text) => {
