@@ -12,7 +12,6 @@ use crate::semidefinite::{Covariance, CovarianceError, of_rows};
 use crate::{EntryMoments, KnownMoments, ModelParameterError, ModelParameters};
 
 mod closed;
-mod wide;
 
 /// Draws farther out than this many deviations have probability 1e-349.
 const FAR: f64 = 40.0;
@@ -131,43 +130,36 @@ impl LogCholeskyGaussian {
         Self::new(start.mean.into(), start.covariance)
     }
 
-    /// The law with this mean and covariance of the six entries, to 1e-9 of the largest of each.
+    /// The law with this mean and covariance of the six entries, to 1e-9 of the largest of each. There is one at most.
     ///
     /// # Algorithm
-    /// Newton's steps with the derivative of the linearised map, from [`linearised`](Self::linearised). Where these lead
-    /// nowhere, as with wide spreads, Newton's method along a path from no spread to all of it. Where a share of the spread has
-    /// no law and the path ends there, the closed form.
+    /// In closed form. What rounding leaves of it, in laws whose parts differ much in size, Newton's steps with the derivative of the
+    /// linearised map take away.
     ///
     /// # Errors
-    /// The mean is no body or one on the boundary, or no such law is found: the widest spreads have none.
+    /// The mean is no body or one on the boundary, or no law has these moments, as is so of the widest spreads.
     pub fn matched(moments: &EntryMoments) -> Result<Self, LogCholeskyGaussianError> {
         const STEPS: usize = 200;
         let start = Start::new(moments)?;
         let target = SVector::<f64, 6>::from(moments.mean());
         let tolerances = (1e-9 * target.amax(), 1e-9 * moments.covariance().amax());
-        let gaps_of = |law: &Self| {
-            let found = law.entry_moments();
-            let gap = target - SVector::<f64, 6>::from(found.mean());
-            (gap, moments.covariance() - found.covariance())
-        };
-        let (mut mean, mut covariance) = (start.mean, start.covariance);
-        for _ in 0..STEPS {
-            let symmetric = (covariance + covariance.transpose()) * 0.5;
-            let Ok(law) = Self::new(mean.into(), symmetric) else { break };
-            let (gap, gaps) = gaps_of(&law);
-            if gap.amax() <= tolerances.0 && gaps.amax() <= tolerances.1 {
-                return Ok(law);
+        let polished = |mut mean: SVector<f64, 6>, mut covariance: SMatrix<f64, 6, 6>| {
+            for _ in 0..STEPS {
+                let symmetric = (covariance + covariance.transpose()) * 0.5;
+                let law = Self::new(mean.into(), symmetric).ok()?;
+                let found = law.entry_moments();
+                let gap = target - SVector::<f64, 6>::from(found.mean());
+                let gaps = moments.covariance() - found.covariance();
+                if gap.amax() <= tolerances.0 && gaps.amax() <= tolerances.1 {
+                    return Some(law);
+                }
+                mean += start.inverse * gap;
+                covariance += start.inverse * gaps * start.inverse.transpose();
             }
-            mean += start.inverse * gap;
-            covariance += start.inverse * gaps * start.inverse.transpose();
-        }
-        let close = |(mean, covariance): (SVector<f64, 6>, SMatrix<f64, 6, 6>)| {
-            let law = Self::new(mean.into(), covariance).ok()?;
-            let (gap, gaps) = gaps_of(&law);
-            (gap.amax() <= tolerances.0 && gaps.amax() <= tolerances.1).then_some(law)
+            None
         };
-        let along_the_path = wide::matched(&start, moments).and_then(close);
-        let law = along_the_path.or_else(|| closed::matched(moments).and_then(close));
+        let closed = closed::matched(moments).and_then(|(mean, c)| polished(mean, c));
+        let law = closed.or_else(|| polished(start.mean, start.covariance));
         law.ok_or(LogCholeskyGaussianError::NoMatch)
     }
 
