@@ -201,11 +201,8 @@ impl<'a, I: Inputs> ExternalSimulation<'a, I> {
     /// The inputs or the outputs do not go into their columns.
     pub fn table(&self, run: u64, told: &Told) -> Result<Table, TableError> {
         let mut table = Table::new(&self.model, run, self.columns())?;
-        let failed = |failure: &Failure| Failed {
-            failure: failure.clone(),
-            infinite: told.infinite.clone(),
-        };
-        let outputs = told.outputs.as_ref().map(Clone::clone).map_err(failed);
+        let failed = |failure| Failed { failure, infinite: told.infinite.clone() };
+        let outputs = told.outputs.clone().map_err(failed);
         self.push(run, &told.inputs, outputs, &mut table)?;
         Ok(table)
     }

@@ -141,9 +141,10 @@ impl fmt::Display for FitNote {
                      about the inverse of the mean, of {percent:.2} %, "
                 )?;
                 match samples {
-                    0 | 1 => f.write_str("which is one sample and may as well be an outlier"),
-                    _ => write!(f, "which is {samples} samples"),
+                    0 | 1 => f.write_str("which is one sample and may as well be an outlier")?,
+                    _ => write!(f, "which is {samples} samples")?,
                 }
+                f.write_str("; the deviations of turns are those about the mean, without that lobe")
             }
             Self::Unidentified { axis } => write!(
                 f,
