@@ -74,8 +74,8 @@ impl Column {
             Self::Axes(body, i) => RunColumn::new(
                 axes_name(body, i),
                 Number,
-                "Component of the attitude of the body's principal axes as drawn, scalar last; none for \
-                 entrywise models.",
+                "Component of the attitude of the body's principal axes as drawn, which takes body components to principal \
+                 ones, scalar last; none for entrywise models.",
             ),
             Self::ReleaseOrder => RunColumn::new(
                 RELEASE_ORDER,
