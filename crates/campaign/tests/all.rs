@@ -7,6 +7,7 @@ mod campaign;
 #[cfg(unix)]
 mod external;
 mod formats;
+mod infinite;
 mod judged_tables;
 mod kept;
 mod requirement;

@@ -5,21 +5,15 @@ use std::{io::Write, path::PathBuf, sync::atomic::AtomicBool};
 
 use super::{
     Folder, FolderError, Problem,
-    area::Area,
     blocks::Blocks,
     hidden::Hidden,
     manifest::{Block, MANIFEST, Manifest, damaged},
     name::Name,
     shared::Shared,
-    told::{manifest, published},
+    told::published,
 };
 use crate::{
-    hash::sha256,
-    identity::Identity,
-    kept::Kept,
-    requirement::{Counting, Looks},
-    stop::is_stopped,
-    stored,
+    hash::sha256, identity::Identity, kept::Kept, requirement::Counting, stop::is_stopped, stored,
     table::Table,
 };
 
@@ -115,25 +109,6 @@ impl Folder<'_> {
     pub fn reduced(&self, identity: &Identity) -> Result<Option<Reduced>, FolderError> {
         let reduced = Reduced::find((&self.hidden, self.contents.what), identity);
         reduced.map_err(|problem| self.failed(problem))
-    }
-
-    /// How verdicts count the runs of the campaign of an identity that is in the folder, complete or not; as those that nobody has looked
-    /// at, if there is none.
-    ///
-    /// # Errors
-    /// The folder cannot be read.
-    pub fn counting(&self, identity: &Identity) -> Result<Counting, FolderError> {
-        let there = || -> Result<Counting, Problem> {
-            let (place, record) = (self.hidden.place(), self.hidden.record(self.contents.what)?.0);
-            let complete = manifest(place, &record, identity);
-            let complete = complete.map(|manifest| manifest.counting()).unwrap_or_default();
-            let area = Area::of(place);
-            let is_same =
-                area.identity()?.is_some_and(|there| identity.difference(&there).is_none());
-            let is_looked_at = is_same && area.is_looked_at();
-            Ok(if is_looked_at { complete.looked_at(Looks::Often) } else { complete })
-        };
-        there().map_err(|problem| self.failed(problem))
     }
 }
 

@@ -42,9 +42,9 @@ const DAMAGED: &str = "damaged";
 /// The blocks of a campaign in its folder.
 #[derive(Debug)]
 pub struct Blocks {
-    place: PathBuf,
+    pub(super) place: PathBuf,
     /// Where the blocks of an unfinished campaign are.
-    area: Area,
+    pub(super) area: Area,
     pub(super) identity: Identity,
     /// Which share this is of; others are done by other processes at the same time.
     shard: Option<Shard>,
@@ -438,15 +438,6 @@ impl Blocks {
         self.area
             .clear()
             .map_err(|error| FolderError { path: self.place.clone(), problem: error.into() })
-    }
-
-    /// Tells that a rule looks at the runs while they are done, before it does: verdicts on them count all looks from then on.
-    ///
-    /// # Errors
-    /// That cannot be written.
-    pub fn looked_at(&self) -> Result<(), FolderError> {
-        let told = self.area.tell_looked();
-        told.map_err(|problem| FolderError { path: self.place.clone(), problem })
     }
 
     /// Removes the traces of a campaign of which no block was finished.

@@ -15,6 +15,7 @@ mod blocks;
 mod disk;
 mod hidden;
 mod journal;
+mod looked;
 mod manifest;
 mod name;
 mod record;
