@@ -179,7 +179,7 @@ impl ForeignTable {
                 "it has no row that counts: of every {group} runs, which have something in common, the first is judged"
             ),
         };
-        ForeignError { path: self.path.clone(), problem }
+        self.refused(&problem)
     }
 
     /// Why it cannot be judged.
@@ -216,7 +216,7 @@ impl ForeignTable {
     /// Why a row of which nobody knows which run it is cannot be counted.
     pub(crate) fn without_run(&self) -> ForeignError {
         let problem = "runs have something in common here, so that the column \"run\" must say which run each row is, with whole numbers from 0";
-        ForeignError { path: self.path.clone(), problem: problem.to_owned() }
+        self.refused(problem)
     }
 
     /// The names of its columns.
@@ -276,8 +276,8 @@ fn is_hidden(path: &Path) -> bool {
 
 /// Whether a folder has such files, at any depth. What cannot be read has none.
 fn holds_parquet(folder: &Path) -> bool {
-    let files = walkdir::WalkDir::new(folder).into_iter().filter_map(Result::ok);
-    files.into_iter().any(|entry| is_parquet(entry.path()))
+    let mut entries = walkdir::WalkDir::new(folder).into_iter().filter_map(Result::ok);
+    entries.any(|entry| is_parquet(entry.path()))
 }
 
 /// Where columns are among those that there are.

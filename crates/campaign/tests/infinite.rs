@@ -1,15 +1,14 @@
 //! Infinite numbers in requirements: of simulators, in run tables and in tables of others.
 
 use gyradius_campaign::{
-    Column, Extent, ExternalSimulation, FailedRuns, Failure, ForeignTable, Inputs, Judgement,
-    Judging, Requirement, RunInputs, Runs, Simulator, SimulatorFunction, Surveys, TableFormat, run,
-    threads,
+    Column, ExternalSimulation, FailedRuns, Failure, ForeignTable, Inputs, Judgement, Judging,
+    Requirement, RunInputs, Runs, Simulator, SimulatorFunction, Surveys, run, threads,
 };
 use gyradius_statistics::Confidence;
 use proptest::prelude::*;
 use std::{fs, path::Path};
 
-use crate::scratch::scratch;
+use crate::scratch::{scratch, written};
 
 /// Runs without inputs.
 struct Nothing;
@@ -95,13 +94,7 @@ proptest! {
             Judgement::of_table(std::slice::from_ref(&requirement), &table).unwrap().remove(0)
         };
         for name in ["it.csv", "it.parquet"] {
-            let path = scratch.path().join(name);
-            let file = fs::File::create(&path).unwrap();
-            let format = TableFormat::of_path(&path).unwrap();
-            let mut writer = format.writer(&table, &Extent::default(), file).unwrap();
-            writer.write(&table).unwrap();
-            writer.finish().unwrap();
-            prop_assert_eq!(&of_file(&path), &judged, "{}", name);
+            prop_assert_eq!(&of_file(&written(&table, scratch.path(), name)), &judged, "{}", name);
         }
         let cells = |run: &Option<[f64; 2]>| match (run, place) {
             (None, _) => ",\n".to_owned(),

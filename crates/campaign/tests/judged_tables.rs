@@ -1,14 +1,14 @@
 //! Tables that say which run a row is, whether it has a number, and how the runs are to be counted.
 
 use gyradius_campaign::{
-    Bound, Cell, Column, Counting, Extent, FailedRuns, Failure, ForeignTable, Judgement, Judging,
-    Looks, Measured, Requirement, Runs, Table, TableFormat,
+    Bound, Cell, Column, Counting, FailedRuns, Failure, ForeignTable, Judgement, Judging, Looks,
+    Measured, Requirement, Runs, Table,
 };
 use gyradius_statistics::{Acceptance, Confidence};
 use proptest::prelude::*;
 use std::{fs, sync::Arc};
 
-use crate::scratch::scratch;
+use crate::scratch::{scratch, written};
 
 fn bound() -> impl Strategy<Value = Bound> {
     prop_oneof![
@@ -70,13 +70,7 @@ fn failures_are_none_of_success_in_any_file() {
         let judged = judging.finish(&Runs::from(table.clone())).unwrap();
         assert_eq!(judged[0].failures(), 20, "{kind:?} {message:?}");
         for name in ["it.csv", "it.parquet"] {
-            let path = scratch.path().join(name);
-            let file = fs::File::create(&path).unwrap();
-            let format = TableFormat::of_path(&path).unwrap();
-            let mut writer = format.writer(&table, &Extent::default(), file).unwrap();
-            writer.write(&table).unwrap();
-            writer.finish().unwrap();
-            let table = ForeignTable::open(&path).unwrap();
+            let table = ForeignTable::open(&written(&table, scratch.path(), name)).unwrap();
             let of_file = Judgement::of_table(std::slice::from_ref(&requirement), &table).unwrap();
             assert_eq!(of_file[0].failures(), 20, "{kind:?} {message:?} {name}");
         }

@@ -1,7 +1,7 @@
 //! Studies that go on until their runs have shown enough.
 
 use serde_json::Value;
-use std::{fs, path::Path};
+use std::{fs, path::Path, process::Command, thread, time::Duration};
 
 use crate::scratch::{Scratch, content, done, one_model, summary};
 
@@ -126,6 +126,18 @@ fn what_is_there_stays() {
     assert!(said.contains("runs is 1234 there and 900 here"), "{said}");
 }
 
+/// Kills a study in the folder `it` once so many of its blocks are there.
+fn killed(study: &mut Command, scratch: &Scratch, blocks: usize) {
+    let mut child = study.spawn().unwrap();
+    let folder = scratch.path("it/.gyradius/campaign/proposed");
+    let some = || fs::read_dir(&folder).is_ok_and(|files| files.count() >= blocks);
+    while !some() && child.try_wait().unwrap().is_none() {
+        thread::sleep(Duration::from_millis(1));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+}
+
 /// A report of a study that a rule is to end, made before it has, keeps nobody from going on.
 #[test]
 fn a_report_meanwhile_is_no_end() {
@@ -137,14 +149,7 @@ fn a_report_meanwhile_is_no_end() {
         scratch.command(&[&["study", "--scenario", "it.toml", "--out", out][..], &until].concat())
     };
     done(study("whole"), 0);
-    let mut child = study("it").spawn().unwrap();
-    let blocks = scratch.path("it/.gyradius/campaign/proposed");
-    let some = || fs::read_dir(&blocks).is_ok_and(|files| files.count() > 3);
-    while !some() && child.try_wait().unwrap().is_none() {
-        std::thread::sleep(std::time::Duration::from_millis(1));
-    }
-    child.kill().unwrap();
-    child.wait().unwrap();
+    killed(&mut study("it"), &scratch, 4);
     if scratch.path("it/.gyradius/campaign").exists() {
         scratch.run(&["report", "it"]);
         assert!(runs(&scratch.path("it")) < 20_000);
@@ -163,14 +168,7 @@ fn runs_of_a_rule_that_was_killed_stay_looked_at() {
         scratch.command(&[&study[..], more].concat())
     };
     let rule = ["--until", "share within 0.0001 %", "--look-every", "200", "--runs", "1000000"];
-    let mut child = study(&rule).spawn().unwrap();
-    let blocks = scratch.path("it/.gyradius/campaign/proposed");
-    let some = || fs::read_dir(&blocks).is_ok_and(|files| files.count() > 1);
-    while !some() && child.try_wait().unwrap().is_none() {
-        std::thread::sleep(std::time::Duration::from_millis(1));
-    }
-    child.kill().unwrap();
-    child.wait().unwrap();
+    killed(&mut study(&rule), &scratch, 2);
     assert!(!scratch.path("it/summary.json").exists());
     let looks = || summary(&scratch.path("it"))["requirements"][0]["looks"].clone();
     for runs in ["40000", "40500"] {

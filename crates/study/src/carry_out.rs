@@ -42,7 +42,6 @@ fn run_to_the_end<C: Subject>(
         return ended(End { runs: there.runs(), enough: true, first_look });
     }
     let blocks = folder.blocks((begun.0, &begun.1), scenario.runs(), options.force, &threads)?;
-    blocks.looked_at()?;
     let plan = plan(scenario, options, Doing::All);
     to_be_done(&simulations, plan, (&folder, &blocks), say)?;
     same_as_before(scenario, &simulations, (folder.place(), &blocks), &threads)
@@ -60,6 +59,7 @@ fn run_to_the_end<C: Subject>(
             let done = threads.install(|| run_again(&simulations, &blocks, stop))?;
             say(Notice::Again(done));
         }
+        blocks.looked_at()?;
         // Nobody knows how many runs there will be: nothing is foretold, and nothing refused for want of room.
         let begin = || if again { Ok(()) } else { Ok(scenario.begin(&models)?) };
         threads.install(|| run_until(&simulations, &blocks, plan, progress, until, evidence, begin))

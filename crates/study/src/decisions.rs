@@ -197,8 +197,7 @@ pub(crate) fn sections(scenario: &impl Subject, head: &Head) -> Vec<Section> {
             );
             let failures = format!("{} of {}", judgement.failures(), judgement.counted());
             let cell = PageCell::from(Text::from(failures)).line(Text::default().quiet(may));
-            let apart = without_number(judgement).into_iter().chain(infinite(judgement));
-            apart.fold(cell, |cell, words| cell.line(Text::default().quiet(words)))
+            apart(judgement).fold(cell, |cell, words| cell.line(Text::default().quiet(words)))
         })
         .numbers("bound that the share keeps", |judged| {
             let limits = judged.judgement.requirement().bound();
@@ -440,21 +439,18 @@ fn verdict(judged: &Judged) -> PageCell {
     }
 }
 
-/// What becomes of the runs without a number, if there are any.
-fn without_number(judgement: &Judgement) -> Option<String> {
-    let (without, runs) = (judgement.runs_without_number(), judgement.runs());
+/// What becomes of the runs without a number, and of those whose number is infinite, as far as there are any.
+fn apart(judgement: &Judgement) -> impl Iterator<Item = String> {
+    const AGAINST: &str = "counted against it";
     let fate = match judgement.requirement().failed_runs() {
-        FailedRuns::Against => "counted against it",
+        FailedRuns::Against => AGAINST,
         FailedRuns::LeftOut => "left out",
     };
-    (without > 0).then(|| format!("{without} of {runs} have no number: {fate}"))
-}
-
-/// How many runs have an infinite number, if some have.
-fn infinite(judgement: &Judgement) -> Option<String> {
-    let (infinite, runs) = (judgement.runs_infinite(), judgement.runs());
-    (infinite > 0)
-        .then(|| format!("{infinite} of {runs} have an infinite number: counted against it"))
+    let without = (judgement.runs_without_number(), "no number", fate);
+    let infinite = (judgement.runs_infinite(), "an infinite number", AGAINST);
+    let runs = judgement.runs();
+    let there = [without, infinite].into_iter().filter(|(number, ..)| *number > 0);
+    there.map(move |(number, what, fate)| format!("{number} of {runs} have {what}: {fate}"))
 }
 
 /// The runs that are named one by one, the worst first: those whose number is infinite, and others by how far they are beyond the bound.

@@ -62,22 +62,22 @@ pub(super) fn read(answer: &[u8], run: u64, outputs: &[Column]) -> Result<Vec<f6
     })
 }
 
-/// The number that a value is. One that is infinite may stand in quotation marks, for JSON has none.
-fn number(value: &&RawValue) -> Option<f64> {
+/// The number that a value is, NaN if it is none. One that is infinite may stand in quotation marks, for JSON has none.
+fn number(value: &&RawValue) -> f64 {
     let text = value.get();
     let word = text.trim_matches('"');
-    word.parse().ok().filter(|number: &f64| number.is_infinite() || word == text)
+    let number = word.parse().ok().filter(|number: &f64| number.is_infinite() || word == text);
+    number.unwrap_or(f64::NAN)
 }
 
-/// The numbers of the declared outputs, in their order, among what was answered by name; what is no number is told as it is
-/// shown.
+/// The numbers of the declared outputs, in their order, among what was answered by name; what is no number is NaN, and told as it
+/// is shown.
 pub(super) fn declared<N: AsRef<str>, V>(
     answered: impl IntoIterator<Item = (N, V)>,
     outputs: &[Column],
-    number: impl Fn(&V) -> Option<f64>,
+    number: impl Fn(&V) -> f64,
     shown: impl Fn(&V) -> String,
 ) -> Result<Vec<f64>, Trouble> {
-    // Of each output whether it was answered, and its number.
     let (mut numbers, mut not_finite) = (vec![None; outputs.len()], None);
     for (place, (name, value)) in answered.into_iter().enumerate() {
         let name = name.as_ref();
@@ -90,21 +90,21 @@ pub(super) fn declared<N: AsRef<str>, V>(
         if numbers[place].is_some() {
             return Err(Trouble::Repeated { output: name.to_owned() });
         }
-        let number = number(&value).filter(|number| !number.is_nan());
+        let number = number(&value);
         numbers[place] = Some(number);
-        if not_finite.is_none() && !number.is_some_and(f64::is_finite) {
-            let told = number.map_or_else(|| shown(&value), |infinite| infinite.to_string());
+        if not_finite.is_none() && !number.is_finite() {
+            let told = if number.is_nan() { shown(&value) } else { number.to_string() };
             not_finite = Some((name.to_owned(), told));
         }
     }
     if let Some((output, value)) = not_finite {
-        let infinite = |number: Option<Option<f64>>| number.flatten().filter(|x| x.is_infinite());
+        let infinite = |number: Option<f64>| number.filter(|x| x.is_infinite());
         let infinite = numbers.into_iter().map(infinite).collect();
         return Err(Trouble::NotFinite { output: Some(output), value, infinite });
     }
     let named = outputs.iter().zip(numbers);
-    let number = |(column, number): (&Column, Option<Option<f64>>)| {
-        number.flatten().ok_or_else(|| Trouble::Missing { output: column.name().to_owned() })
+    let number = |(column, number): (&Column, Option<f64>)| {
+        number.ok_or_else(|| Trouble::Missing { output: column.name().to_owned() })
     };
     named.map(number).collect()
 }

@@ -49,7 +49,7 @@ impl SimulatorFunction {
             .map_err(|panic| Trouble::Panicked { text: text(&*panic) })?;
         told(&answer);
         let answered = answer.map_err(|text| Trouble::Error { text })?;
-        declared(answered, outputs, |number| Some(*number), f64::to_string)
+        declared(answered, outputs, |number| *number, f64::to_string)
     }
 }
 

@@ -84,31 +84,10 @@ impl Trouble {
         }
     }
 
-    /// The declared outputs, in their order, that the run has although it failed, which are infinite; empty if it has none at all.
+    /// The declared outputs, in their order, that the run has although it failed: those that are infinite. Empty if it has none at all.
     pub(super) fn infinite(&self) -> &[Option<f64>] {
-        match self {
-            Self::NotFinite { infinite, .. } => infinite,
-            Self::Input { .. }
-            | Self::Start(_)
-            | Self::Files(_)
-            | Self::Timeout { .. }
-            | Self::Stopped
-            | Self::Ended { .. }
-            | Self::Closed { .. }
-            | Self::TooLong { .. }
-            | Self::Early { .. }
-            | Self::OutOfTurn { .. }
-            | Self::NoFile
-            | Self::NotAFile { .. }
-            | Self::NotJson { .. }
-            | Self::NotJsonFile { .. }
-            | Self::Missing { .. }
-            | Self::Repeated { .. }
-            | Self::Unknown { .. }
-            | Self::OutputsOrError
-            | Self::Error { .. }
-            | Self::Panicked { .. } => &[],
-        }
+        let Self::NotFinite { infinite, .. } = self else { return &[] };
+        infinite
     }
 
     /// The same, of an answer that stands in a file.

@@ -624,13 +624,6 @@ pub(crate) struct FragmentArgs {
     pub(crate) format: Form,
 }
 
-impl FragmentArgs {
-    /// The file to write to, if not to standard output.
-    pub(crate) fn file(&self) -> Option<&Path> {
-        self.output.as_deref().filter(|path| *path != Path::new("-"))
-    }
-}
-
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum BodyArg {
     /// What is separated

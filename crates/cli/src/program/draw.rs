@@ -13,7 +13,7 @@ use crate::program::{
     args::DrawArgs,
     draw_output::{format, refuse_input},
     draw_robot::{draw_robot, is_robot},
-    output::{complain, say},
+    output::{complain, file_of, say},
     progress,
     signals::Signals,
     study::scenario,
@@ -32,7 +32,7 @@ pub(crate) fn draw(arguments: &DrawArgs) -> Result<ExitCode, Box<dyn Error>> {
                     itself what is uncertain"
             .into());
     }
-    let file = arguments.output.as_deref().filter(|path| *path != Path::new("-"));
+    let file = file_of(arguments.output.as_deref());
     let format = format(arguments, file)?;
     let scenario = scenario(arguments.scenario.as_deref(), arguments.seed)?;
     for root in scenario.folded() {

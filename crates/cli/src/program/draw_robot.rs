@@ -20,7 +20,7 @@ use crate::program::{
     args::DrawArgs,
     draw_output::{format, refuse_input},
     number::short,
-    output::{complain, print, say},
+    output::{complain, file_of, print, say},
     progress,
     signals::Signals,
 };
@@ -91,7 +91,7 @@ fn write(
     input: &Path,
     draw: &RobotDraw<'_>,
 ) -> Result<Option<String>, Box<dyn Error>> {
-    let file = arguments.output.as_deref().filter(|path| *path != Path::new("-"));
+    let file = file_of(arguments.output.as_deref());
     match file {
         Some(path) if arguments.format.is_some() || TableFormat::of_path(path).is_some() => {
             let format = format(arguments, file)?;

@@ -25,6 +25,11 @@ fn commented(text: &str) -> String {
     text.lines().map(|line| format!("# {line}").trim_end().to_owned() + "\n").collect()
 }
 
+/// The file that an output is written to; none if that is standard output, which `-` stands for.
+pub(crate) fn file_of(output: Option<&Path>) -> Option<&Path> {
+    output.filter(|path| *path != Path::new("-"))
+}
+
 /// Writes fragment and report: both to standard output, the report as comments, so that the whole
 /// can be pasted; or the fragment to a file and the report to standard output.
 pub(crate) fn write(
@@ -36,7 +41,7 @@ pub(crate) fn write(
 ) -> Result<(), String> {
     let pasted = format!("{}\n{fragment}", commented(report));
     let mut said = String::new();
-    let file = arguments.file();
+    let file = file_of(arguments.output.as_deref());
     if let Some(path) = file {
         said = write_beside(path, &pasted, input, arguments.force)?;
     }

@@ -64,7 +64,7 @@ pub(super) fn run(arguments: &FitArgs, path: &Path) -> Result<bool, Box<dyn Erro
     let json = serde_json::to_string_pretty(&document)? + "\n";
     let mut text = String::new();
     write_text(&mut text, path, &estimate, &body)?;
-    if let Some(target) = arguments.fragment.file() {
+    if let Some(target) = output::file_of(arguments.fragment.output.as_deref()) {
         text += &output::write_beside(target, &json, path, arguments.fragment.force)?;
     }
     match arguments.fragment.format {

@@ -17,7 +17,7 @@ use std::{
 use crate::program::{
     args::SlurmArgs,
     draw_output::refuse_input,
-    output::{print, say, to_standard_output},
+    output::{file_of, print, say, to_standard_output},
     study::stated,
 };
 use script::{Limits, Script};
@@ -28,7 +28,7 @@ pub(crate) fn slurm(arguments: &SlurmArgs) -> Result<(), Box<dyn Error>> {
     let scenario = stated(&arguments.scenario)?;
     scenario.check_shards()?;
     let script = script(arguments, &scenario)?.to_string();
-    let Some(path) = arguments.output.as_deref().filter(|path| *path != Path::new("-")) else {
+    let Some(path) = file_of(arguments.output.as_deref()) else {
         return Ok(to_standard_output(&script)?);
     };
     if let Some(input) = &arguments.scenario.file {
