@@ -2,40 +2,20 @@
 
 use nalgebra::{SMatrix, SVector};
 
-/// e^{aᵀx} times up to four of the coordinates.
-#[derive(Clone, Copy)]
+/// e^{aᵀx} times up to two of the coordinates.
 pub(crate) struct GaussianMonomial<const N: usize> {
     exponents: [f64; N],
-    factors: [usize; 4],
-    length: usize,
+    factors: Vec<usize>,
 }
 
 impl<const N: usize> GaussianMonomial<N> {
     /// Exponents by coordinate, those that are not named being zero, and factors.
-    pub(crate) fn new(exponents: &[(usize, f64)], of: &[usize]) -> Self {
-        let mut factors = [0; 4];
-        factors[..of.len()].copy_from_slice(of);
+    pub(crate) fn new(exponents: &[(usize, f64)], factors: &[usize]) -> Self {
         let mut all = [0.0; N];
         for &(coordinate, exponent) in exponents {
             all[coordinate] += exponent;
         }
-        Self { exponents: all, factors, length: of.len() }
-    }
-
-    pub(crate) fn times(&self, other: &Self) -> Self {
-        let mut product = *self;
-        for (a, b) in product.exponents.iter_mut().zip(other.exponents) {
-            *a += b;
-        }
-        for &factor in &other.factors[..other.length] {
-            product.factors[product.length] = factor;
-            product.length += 1;
-        }
-        product
-    }
-
-    fn factors(&self) -> &[usize] {
-        &self.factors[..self.length]
+        Self { exponents: all, factors: factors.to_vec() }
     }
 }
 
@@ -61,27 +41,82 @@ impl<'a, const N: usize> Expected<'a, N> {
             tilt += column * exponent;
         }
         let exponent: f64 = (0..N).map(|i| a[i] * (mean[i] + 0.5 * tilt[i])).sum();
-        let product = gaussian_product(monomial.factors(), &(mean + tilt), c);
-        Self { monomial, tilt, exponential: libm::exp(exponent), product }
+        let mut expected = Self { monomial, tilt, exponential: libm::exp(exponent), product: 1.0 };
+        let factors: Vec<Factor> = expected.factors(true, mean, &SVector::zeros()).collect();
+        expected.product = Product::of(&factors, c).all;
+        expected
     }
 
     fn mean(&self) -> f64 {
         self.exponential * self.product
     }
 
-    /// The covariance with another: e^{…a} e^{…b} (e^{aᵀCb} E[p q] − E[p] E[q]), each expectation about its own mean. What is constant
-    /// cancels, and of narrow laws the difference of the exponential from one keeps its digits.
+    /// Its factors, of which another monomial shifts the means.
+    fn factors(
+        &self,
+        of_first: bool,
+        mean: &SVector<f64, N>,
+        shift: &SVector<f64, N>,
+    ) -> impl Iterator<Item = Factor> {
+        self.monomial.factors.iter().map(move |&place| Factor {
+            place,
+            mean: mean[place] + self.tilt[place],
+            shift: shift[place],
+            of_first,
+        })
+    }
+
+    /// The covariance with another: e^{…a} e^{…b} (e^{aᵀCb} E[p q] − E[p] E[q]), each expectation about its own mean. What cancels
+    /// is never added, so that the covariances of narrow laws keep their digits.
     fn covariance(&self, other: &Self, mean: &SVector<f64, N>, c: &SMatrix<f64, N, N>) -> f64 {
         let tie: f64 = (0..N).map(|i| self.monomial.exponents[i] * other.tilt[i]).sum();
-        let both = match [self.monomial.factors(), other.monomial.factors()] {
-            [[], []] => 1.0,
-            _ => {
-                let both = self.monomial.times(other.monomial);
-                gaussian_product(both.factors(), &(mean + self.tilt + other.tilt), c)
-            }
+        let own = self.factors(true, mean, &other.tilt);
+        let factors: Vec<Factor> = own.chain(other.factors(false, mean, &self.tilt)).collect();
+        let product = Product::of(&factors, c);
+        let more = if tie == 0.0 { 0.0 } else { libm::expm1(tie) * product.all };
+        self.exponential * other.exponential * (more + product.tied)
+    }
+}
+
+/// A coordinate among the factors of p q.
+#[derive(Clone, Copy)]
+struct Factor {
+    place: usize,
+    /// Under the law by which the expectation of its own monomial is taken.
+    mean: f64,
+    /// What the other monomial adds to it in the expectation of both.
+    shift: f64,
+    /// It is one of p.
+    of_first: bool,
+}
+
+/// E[p q] (Isserlis 1918, doi:10.1093/biomet/12.1-2.134).
+struct Product {
+    all: f64,
+    /// The terms of it that tie p to q, by a shift or by a covariance across: E[p q] − E[p] E[q].
+    tied: f64,
+}
+
+impl Product {
+    /// Of four factors at most.
+    fn of<const N: usize>(factors: &[Factor], c: &SMatrix<f64, N, N>) -> Self {
+        let Some((first, rest)) = factors.split_first() else {
+            return Self { all: 1.0, tied: 0.0 };
         };
-        let more = if tie == 0.0 { 0.0 } else { libm::expm1(tie) * both };
-        self.exponential * other.exponential * (more + (both - self.product * other.product))
+        let others = Self::of(rest, c);
+        let mut all = (first.mean + first.shift) * others.all;
+        let mut tied = first.mean * others.tied + first.shift * others.all;
+        for (i, other) in rest.iter().enumerate() {
+            let mut left = [*first; 3];
+            left[..i].copy_from_slice(&rest[..i]);
+            left[i..rest.len() - 1].copy_from_slice(&rest[i + 1..]);
+            let others = Self::of(&left[..rest.len() - 1], c);
+            let covariance = c[(first.place, other.place)];
+            all += covariance * others.all;
+            let is_across = first.of_first != other.of_first;
+            tied += covariance * if is_across { others.all } else { others.tied };
+        }
+        Self { all, tied }
     }
 }
 
@@ -136,28 +171,6 @@ pub(crate) fn log_cholesky_entries<const N: usize>(
     ]
 }
 
-/// E Π x_i over the listed coordinates, x ~ N(mean, c) (Isserlis 1918, doi:10.1093/biomet/12.1-2.134).
-fn gaussian_product<const N: usize>(
-    factors: &[usize],
-    mean: &SVector<f64, N>,
-    c: &SMatrix<f64, N, N>,
-) -> f64 {
-    let Some((&first, rest)) = factors.split_first() else {
-        return 1.0;
-    };
-    let mut sum = mean[first] * gaussian_product(rest, mean, c);
-    for (i, &other) in rest.iter().enumerate() {
-        // All but this one; there are four factors at most.
-        let mut left = [0; 3];
-        for (left, factor) in left.iter_mut().zip(rest.iter().enumerate().filter(|(j, _)| *j != i))
-        {
-            *left = *factor.1;
-        }
-        sum += c[(first, other)] * gaussian_product(&left[..rest.len() - 1], mean, c);
-    }
-    sum
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -179,7 +192,7 @@ mod tests {
                 std::array::from_fn(|k| node(n / NODES.pow(k as u32) % NODES));
             let x = mean + root * Vector4::from(each.map(|(_, z)| z));
             let exponent: f64 = (0..4).map(|i| of.exponents[i] * x[i]).sum();
-            let factors: f64 = of.factors().iter().map(|i| x[*i]).product();
+            let factors: f64 = of.factors.iter().map(|i| x[*i]).product();
             sum += each.map(|(w, _)| w).iter().product::<f64>() * exponent.exp() * factors;
         }
         sum
@@ -201,13 +214,15 @@ mod tests {
             let (mean, c) = (Vector4::from(mean), root * root.transpose());
             let all: [GaussianMonomial<4>; 2] =
                 std::array::from_fn(|k| GaussianMonomial::new(&exponents[k..=k], &factors[k]));
+            let first = all.each_ref().map(|one| by_quadrature(one, &mean, &root));
             let (means, covariance) = moments(&all.map(|one| vec![one]), &mean, &c);
-            let first = all.map(|one| by_quadrature(&one, &mean, &root));
             let size = first[0].abs().max(1e-3) * first[1].abs().max(1e-3);
             for i in 0..2 {
                 prop_assert!((means[i] - first[i]).abs() < 1e-9 * first[i].abs().max(1.0), "{i}");
                 for j in 0..2 {
-                    let both = by_quadrature(&all[i].times(&all[j]), &mean, &root);
+                    let exponents = [exponents[i], exponents[j]];
+                    let of_both = GaussianMonomial::new(&exponents, &[&factors[i][..], &factors[j]].concat());
+                    let both = by_quadrature(&of_both, &mean, &root);
                     let gap = covariance[(i, j)] - (both - first[i] * first[j]);
                     prop_assert!(gap.abs() < 1e-8 * both.abs().max(size).max(1e-3), "{i} {j}: {gap:e}");
                 }
@@ -215,16 +230,36 @@ mod tests {
         }
     }
 
-    /// Deviations of a millionth: the difference of expectations would have four digits left.
-    #[test]
-    fn covariances_of_narrow_laws_keep_their_digits() {
-        let (mean, c) = (Vector4::new(0.3, -0.2, 0.5, 0.1), Matrix4::identity() * 1e-16);
-        let all = [
-            vec![GaussianMonomial::new(&[(0, 2.0), (1, 1.0)], &[])],
-            vec![GaussianMonomial::new(&[(0, 1.0)], &[])],
-        ];
-        let (means, covariance) = moments(&all, &mean, &c);
-        let expected = means[0] * means[1] * 2e-16;
-        assert!((covariance[(0, 1)] / expected - 1.0).abs() < 1e-12, "{covariance}");
+    proptest! {
+        /// Those of the derivatives, in the limit. The difference of two expectations would have no digit left.
+        #[test]
+        fn covariances_of_narrow_laws_keep_their_digits(
+            mean in prop::array::uniform4(0.1..1.0_f64),
+            root in prop::array::uniform16(-0.4..0.4_f64),
+            narrow in 9.0..100.0_f64,
+            exponents in prop::collection::vec((0..4_usize, prop::sample::select(vec![0.0, 1.0, 2.0])), 2),
+            factors in prop::collection::vec(prop::collection::vec(0..4_usize, 0..=2), 2),
+        ) {
+            let root = Matrix4::from_row_slice(&root) * 10_f64.powf(-narrow);
+            let (mean, c) = (Vector4::from(mean), root * root.transpose());
+            let all: [GaussianMonomial<4>; 2] =
+                std::array::from_fn(|k| GaussianMonomial::new(&exponents[k..=k], &factors[k]));
+            let derivatives = all.each_ref().map(|one| {
+                let exponent: f64 = (0..4).map(|i| one.exponents[i] * mean[i]).sum();
+                let value = exponent.exp() * one.factors.iter().map(|i| mean[*i]).product::<f64>();
+                Vector4::from_fn(|i, _| {
+                    let power = one.factors.iter().filter(|factor| **factor == i).count() as f64;
+                    value * (one.exponents[i] + power / mean[i])
+                })
+            });
+            let (_, covariance) = moments(&all.map(|one| vec![one]), &mean, &c);
+            for i in 0..2 {
+                for j in 0..2 {
+                    let parts = (root.transpose() * derivatives[i]).norm() * (root.transpose() * derivatives[j]).norm();
+                    let gap = covariance[(i, j)] - (derivatives[i].transpose() * c * derivatives[j])[0];
+                    prop_assert!(gap.abs() <= 1e-12 * parts, "{i} {j}: {gap:e} of {parts:e}");
+                }
+            }
+        }
     }
 }

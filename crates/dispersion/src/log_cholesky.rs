@@ -79,8 +79,7 @@ pub enum LogCholeskyGaussianError {
 /// Not invariant under rotation: axis 3 is factored first, and a Gaussian in one frame is none in
 /// another. The mean of the coordinates is not the mean body: E e^{2d} > e^{2E d}.
 /// [`matched`](Self::matched) solves for given moments of the entries. Rods, plates and points lie at
-/// infinity. Covariances of the entries are differences of products: deviations below 1e-7 of the
-/// moments are rounding.
+/// infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LogCholeskyGaussian {
     mean: SVector<f64, 6>,
@@ -139,28 +138,25 @@ impl LogCholeskyGaussian {
     /// # Errors
     /// The mean is no body or one on the boundary, or no law has these moments, as is so of the widest spreads.
     pub fn matched(moments: &EntryMoments) -> Result<Self, LogCholeskyGaussianError> {
-        const STEPS: usize = 200;
+        const STEPS: usize = 20;
         let start = Start::new(moments)?;
         let target = SVector::<f64, 6>::from(moments.mean());
         let tolerances = (1e-9 * target.amax(), 1e-9 * moments.covariance().amax());
-        let polished = |mut mean: SVector<f64, 6>, mut covariance: SMatrix<f64, 6, 6>| {
-            for _ in 0..STEPS {
-                let symmetric = (covariance + covariance.transpose()) * 0.5;
-                let law = Self::new(mean.into(), symmetric).ok()?;
-                let found = law.entry_moments();
-                let gap = target - SVector::<f64, 6>::from(found.mean());
-                let gaps = moments.covariance() - found.covariance();
-                if gap.amax() <= tolerances.0 && gaps.amax() <= tolerances.1 {
-                    return Some(law);
-                }
-                mean += start.inverse * gap;
-                covariance += start.inverse * gaps * start.inverse.transpose();
+        let none = LogCholeskyGaussianError::NoMatch;
+        let (mut mean, mut covariance) = closed::matched(moments).ok_or(none)?;
+        for _ in 0..STEPS {
+            let symmetric = (covariance + covariance.transpose()) * 0.5;
+            let law = Self::new(mean.into(), symmetric).map_err(|_| none)?;
+            let found = law.entry_moments();
+            let gap = target - SVector::<f64, 6>::from(found.mean());
+            let gaps = moments.covariance() - found.covariance();
+            if gap.amax() <= tolerances.0 && gaps.amax() <= tolerances.1 {
+                return Ok(law);
             }
-            None
-        };
-        let closed = closed::matched(moments).and_then(|(mean, c)| polished(mean, c));
-        let law = closed.or_else(|| polished(start.mean, start.covariance));
-        law.ok_or(LogCholeskyGaussianError::NoMatch)
+            mean += start.inverse * gap;
+            covariance += start.inverse * gaps * start.inverse.transpose();
+        }
+        Err(none)
     }
 
     /// Means of d₁, d₂, d₃, s₁₂, s₂₃, s₁₃.
