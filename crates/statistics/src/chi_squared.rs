@@ -190,7 +190,8 @@ mod tests {
                 prop_assert!((below + above - 1.0).abs() < 1e-14, "{below} {above}");
                 let further = tails(at(z + step), k);
                 prop_assert!(further.1 <= above && further.0 >= below, "{k:e} {z} {step}");
-                if power < 24.0 {
+                // Farther out Wilson and Hilferty's tail is off by more than the tenth.
+                if power < 24.0 && z.powi(4) < k {
                     // x is a float, which is z to half a unit of its last digit.
                     let unit = f64::EPSILON * k.sqrt();
                     let (least, most) = (tail::normal(z + unit + 1e-4), tail::normal(z - unit - 1e-4));

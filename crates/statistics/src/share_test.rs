@@ -86,10 +86,12 @@ impl Cell {
         runs as f64 * self.share()
     }
 
-    /// What a part of these runs adds to the statistic.
+    /// What a part of these runs adds to the statistic: (k N − n f)²/(n f (N − f)). Whole numbers, so that ties stay ties and failures
+    /// may be called successes.
     fn term(self, part: Self) -> f64 {
-        let expected = self.expected(part.runs);
-        (part.failures as f64 - expected).powi(2) / (expected * (1.0 - self.share()))
+        let [n, k, all, f] = [part.runs, part.failures, self.runs, self.failures].map(u128::from);
+        let off = (k * all).abs_diff(n * f) as f64;
+        off * off / (n as f64 * f as f64 * (all - f) as f64)
     }
 }
 

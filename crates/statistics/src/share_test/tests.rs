@@ -15,12 +15,12 @@ fn cells(of: &[(u64, u64)]) -> Vec<Cell> {
 fn by_enumeration(cells: &[Cell]) -> f64 {
     let runs: u64 = cells.iter().map(|cell| cell.runs).sum();
     let failures: u64 = cells.iter().map(|cell| cell.failures).sum();
-    let share = failures as f64 / runs as f64;
-    let statistic = |counts: &[u64], scale: f64| -> f64 {
+    // Each term in eighths, rounded, in whole numbers.
+    let statistic = |counts: &[u64]| -> u64 {
         let of = |(cell, k): (&Cell, &u64)| {
-            let expected = cell.runs as f64 * share;
-            let term = (*k as f64 - expected).powi(2) / (expected * (1.0 - share));
-            (term * scale).round()
+            let above = 8 * (k * runs).abs_diff(cell.runs * failures).pow(2);
+            let below = cell.runs * failures * (runs - failures);
+            (2 * above + below) / (2 * below)
         };
         cells.iter().filter(|cell| cell.runs > 0).zip(counts).map(of).sum()
     };
@@ -38,7 +38,7 @@ fn by_enumeration(cells: &[Cell]) -> f64 {
             })
             .collect();
         all += 1;
-        as_large += u32::from(statistic(&counts, 8.0) >= statistic(&found, 8.0));
+        as_large += u32::from(statistic(&counts) >= statistic(&found));
     }
     f64::from(as_large) / f64::from(all)
 }
