@@ -178,7 +178,7 @@ proptest! {
     /// A word that ends in two axes is a word, if nothing else speaks of products.
     #[test]
     fn no_other_word_is_taken_for_a_product(
-        start in "[a-hj-z]{2,6}",
+        start in "[a-hj-w]{2,6}",
         pair in prop::sample::select(vec!["xy", "xz", "yz", "zx", "_12", " 13", "-23"]),
         end in prop::sample::select(vec!["", "_kg", " [m]", "_area", " of the plane"]),
     ) {
