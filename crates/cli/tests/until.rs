@@ -138,24 +138,35 @@ fn killed(study: &mut Command, scratch: &Scratch, blocks: usize) {
     child.wait().unwrap();
 }
 
-/// A report of a study that a rule is to end, made before it has, keeps nobody from going on.
+/// A report of a study that a rule is to end, made before it has, says so and keeps nobody from going on, whichever rows are to be kept
+/// in the end.
 #[test]
 fn a_report_meanwhile_is_no_end() {
     let scratch = Scratch::new();
     fs::write(scratch.path("it.toml"), scenario("", 10.0, 0.99)).unwrap();
-    let study = |out: &str| {
-        let until =
-            ["--until", "decided", "--look-every", "200", "--runs", "20000", "--threads", "1"];
-        scratch.command(&[&["study", "--scenario", "it.toml", "--out", out][..], &until].concat())
-    };
-    done(study("whole"), 0);
-    killed(&mut study("it"), &scratch, 4);
-    if scratch.path("it/.gyradius/campaign").exists() {
-        scratch.run(&["report", "it"]);
-        assert!(runs(&scratch.path("it")) < 20_000);
+    for rows in ["all", "none"] {
+        let study = |out: &str| {
+            let until = ["--until", "mean(nutation_deg) within 0.02", "--look-every", "200"];
+            let most = ["--runs", "200000", "--threads", "1", "--rows", rows];
+            let study = ["study", "--scenario", "it.toml", "--out", out];
+            scratch.command(&[&study[..], &until, &most].concat())
+        };
+        done(study("whole"), 0);
+        killed(&mut study("it"), &scratch, 4);
+        assert!(scratch.path("it/.gyradius/campaign").exists());
+        for _ in 0..2 {
+            let said = scratch.done(&["report", "it"], 1);
+            assert!(said.contains("The runs were interrupted: so far there are "), "{said}");
+            let report = fs::read_to_string(scratch.path("it/report.md")).unwrap();
+            assert!(report.contains("A rule has not ended the runs yet."), "{report}");
+            assert!(runs(&scratch.path("it")) < runs(&scratch.path("whole")));
+        }
+        done(study("it"), 0);
+        assert_eq!(content(&scratch.path("it")), content(&scratch.path("whole")));
+        for out in ["it", "whole"] {
+            fs::remove_dir_all(scratch.path(out)).unwrap();
+        }
     }
-    done(study("it"), 0);
-    assert_eq!(content(&scratch.path("it")), content(&scratch.path("whole")));
 }
 
 /// Runs that a rule looked at until it was killed are judged as runs that were looked at, by whoever goes on without a rule.

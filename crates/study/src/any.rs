@@ -387,7 +387,7 @@ impl StudyOutcome {
         Self {
             folder: folder.to_owned(),
             head: summary.head().clone(),
-            complete: summary.head().missing.is_empty(),
+            complete: summary.head().is_complete(),
             models: summary
                 .failed()
                 .into_iter()
@@ -429,6 +429,12 @@ impl StudyOutcome {
     #[must_use]
     pub fn requirements(&self) -> &[Judged] {
         &self.head.requirements
+    }
+
+    /// Whether all runs are done: to their number, or until a rule ended them.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.head.is_complete()
     }
 
     /// The runs that are not done; none of a complete study.

@@ -19,6 +19,12 @@ pub struct Ended {
 }
 
 impl Ended {
+    /// Whether the runs were interrupted before the rule ended them or there were as many as there may be.
+    #[must_use]
+    pub fn is_interrupted(&self) -> bool {
+        !self.enough && self.runs < self.until.most_runs()
+    }
+
     /// After so many runs, which were enough or not.
     pub(crate) fn new(until: &Until, runs: u64, enough: bool) -> Self {
         let looks = until.looks().take_while(|look| *look <= runs).count() as u64;
@@ -43,7 +49,12 @@ impl fmt::Display for Ended {
             )?;
         }
         let (rule, most, s) = (until.rule(), until.most_runs(), if *looks == 1 { "" } else { "s" });
-        if *enough {
+        if self.is_interrupted() {
+            write!(
+                f,
+                "The runs were interrupted: so far there are {runs} of each model, and with the rule “{rule}” there may be up to {most}."
+            )
+        } else if *enough {
             write!(
                 f,
                 "The rule “{rule}” ended the runs after {runs} of each model, at {looks} look{s}; there might have been {most}."

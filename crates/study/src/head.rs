@@ -59,6 +59,16 @@ pub struct Head {
 }
 
 impl Head {
+    /// Whether all runs are done: to their number, or until a rule ended them.
+    pub(crate) fn is_complete(&self) -> bool {
+        self.missing.is_empty() && !self.is_interrupted()
+    }
+
+    /// Whether a rule is to end the runs and has not.
+    pub(crate) fn is_interrupted(&self) -> bool {
+        self.ended.as_ref().is_some_and(Ended::is_interrupted)
+    }
+
     /// How many runs of each model are independent of each other.
     pub(crate) fn independent_runs(&self) -> u64 {
         self.independent_runs_per_model.unwrap_or(self.runs_per_model)

@@ -441,6 +441,9 @@ pub(crate) fn noting_what_is_missing(mut document: Document, head: &Head) -> Doc
         };
         document = document.noting("", again);
     }
+    if head.is_interrupted() {
+        document = document.noting(" A rule has not ended the runs yet.", String::new());
+    }
     if head.missing.is_empty() {
         return document;
     }

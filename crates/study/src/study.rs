@@ -98,11 +98,12 @@ pub(crate) fn do_what_is_left<C: Subject>(
     let plan = plan(scenario, options, doing);
     let left = to_be_done(&simulations, plan, (&folder, &blocks), say)?;
     // What a rule ended was held against its runs, and retried, before the rule was asked.
-    if ended.is_none() {
+    let is_ended = ended.as_ref().is_some_and(|ended| !ended.is_interrupted());
+    if !is_ended {
         same_as_before(scenario, &simulations, (&place, &blocks), &threads)
             .inspect_err(|_| blocks.abandon())?;
     }
-    let retries = options.retry_failed && ended.is_none();
+    let retries = options.retry_failed && !is_ended;
     let again = retries && doing == Doing::All && blocks.any_failed();
     if again || left > 0 && doing == Doing::All {
         scenario.begin(&models).inspect_err(|_| blocks.abandon())?;
@@ -113,7 +114,8 @@ pub(crate) fn do_what_is_left<C: Subject>(
         say(Notice::Again(done.inspect_err(|_| blocks.abandon())?));
     }
     // A complete study that is being extended stays one until all of the runs are there: its blocks and what tells of them.
-    let incomplete = doing == Doing::Nothing && left > 0;
+    let is_begun = left > 0 || ended.is_some() && !is_ended;
+    let incomplete = doing == Doing::Nothing && is_begun;
     let manifest = incomplete.then(|| MANIFEST.to_owned());
     let published = blocks.published().into_iter().chain(manifest);
     // What is not all kept is written anew.
@@ -155,7 +157,7 @@ pub(crate) fn do_what_is_left<C: Subject>(
     let (runs, mut summary) = done.inspect_err(|_| blocks.abandon())?;
     scenario.unasked(&models).into_iter().for_each(|unasked| say(Notice::Unasked(unasked)));
 
-    let complete = summary.head().missing.is_empty();
+    let complete = summary.head().is_complete();
     let mut beside = None;
     if doing == Doing::All {
         let before = || whole_summary::<C>(&place);
@@ -226,7 +228,7 @@ fn write<C: Subject>(
     options: &Options,
     threads: &ThreadPool,
 ) -> Result<(PathBuf, C::Summary), StudyError> {
-    if summary.head().missing.is_empty() {
+    if summary.head().is_complete() {
         let empty = empty_tables(simulations)?;
         let kept = (&scenario.kept(), counting);
         folder.adopt(blocks, &empty, kept, threads, options.stop.as_deref())?;
@@ -280,7 +282,7 @@ fn reduced<C: Subject>(
 fn whole_summary<C: Subject>(place: &Path) -> Option<C::Summary> {
     let read = fs::read_to_string(place.join("summary.json")).ok()?;
     let summary = serde_json::from_str::<C::Summary>(&read).ok()?;
-    summary.head().missing.is_empty().then_some(summary)
+    summary.head().is_complete().then_some(summary)
 }
 
 /// Puts together what is there of a study whose runs are not all done, in its folder, which holds this scenario.
@@ -298,8 +300,10 @@ pub(crate) fn put_together<C: Subject>(
     let blocks = told(folder, &contents(scenario), &identity(scenario))?;
     let end = blocks.iter().map(|block| block.range().end).max().unwrap_or(scenario.runs());
     let end = end.next_multiple_of(scenario.fleet().map_or(1, Fleet::flights));
-    let scenario = scenario.ended_after(end.min(until.most_runs()), until.first_look())?;
-    do_what_is_left(&scenario, &options, (Doing::Nothing, None), &|_| {}, say)
+    let end = end.min(until.most_runs());
+    let so_far = Ended::new(until, end, false);
+    let scenario = scenario.ended_after(end, until.first_look())?;
+    do_what_is_left(&scenario, &options, (Doing::Nothing, Some(so_far)), &|_| {}, say)
 }
 
 /// Says how many of the runs are done already, and what the others will take; refuses what the disk or the memory has no

@@ -24,8 +24,7 @@ pub(crate) fn report(arguments: &ReportArgs) -> Result<ExitCode, Box<dyn Error>>
         write(folder, arguments)?;
     }
     print(&study.to_string())?;
-    let complete = study.missing().is_empty();
-    Ok(if complete { ExitCode::SUCCESS } else { ExitCode::from(UNFINISHED) })
+    Ok(if study.is_complete() { ExitCode::SUCCESS } else { ExitCode::from(UNFINISHED) })
 }
 
 fn write(folder: &Path, arguments: &ReportArgs) -> Result<PathBuf, ResultsError> {
