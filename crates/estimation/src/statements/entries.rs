@@ -2,12 +2,11 @@
 
 use gyradius_dispersion::SecondMomentStatistics;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use pulp::{Simd, WithSimd};
 
-/// Room for the six entries that vector units of any length fill.
-const LANES: usize = 8;
-/// Nodes that are added at a time: few enough for the first-level cache.
-const TOGETHER: usize = 64;
+use super::{
+    nodes::{Rule, Turns},
+    square_moments::{Element, SquareMoments},
+};
 
 /// An entry is Σ_k K_k M_k with forms M of the axes: the mean and the covariance of M for each entry.
 #[derive(Clone, Copy, Debug)]
@@ -22,34 +21,29 @@ impl Forms {
         Self { mean: forms(attitude), covariance: [Matrix3::zeros(); 6] }
     }
 
-    /// About axes given by nodes and weights, near this attitude or not: what is summed is what the forms are more than
-    /// there, so that small covariances keep their digits.
-    pub(super) fn over(near: &UnitQuaternion<f64>, nodes: &[(f64, UnitQuaternion<f64>)]) -> Self {
-        let first = forms(near);
-        let mut sums = Sums::default();
-        let mut offs = Vec::with_capacity(TOGETHER);
-        for nodes in nodes.chunks(TOGETHER) {
-            offs.clear();
-            offs.extend(nodes.iter().map(|(weight, q)| {
-                let forms = forms(q);
-                let mut off = Off { weight: *weight, axes: [[0.0; LANES]; 3] };
-                for e in 0..6 {
-                    for k in 0..3 {
-                        off.axes[k][e] = forms[e][k] - first[e][k];
-                    }
-                }
-                off
-            }));
-            pulp::Arch::new().dispatch(Add { offs: &offs, sums: &mut sums });
-        }
-        let Sums { total, firsts, squares } = sums;
-        let off: [Vector3<f64>; 6] =
-            std::array::from_fn(|e| Vector3::from(firsts.map(|sum| sum[e])) / total);
-        let covariance = std::array::from_fn(|e| {
-            let [xx, yy, zz, xy, xz, yz] = squares.map(|sum| sum[e] / total);
-            Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) - off[e] * off[e].transpose()
+    /// About axes that turn: what is summed is what the forms are more than about the mean, so that small covariances keep their
+    /// digits.
+    ///
+    /// With half turns z about the axes a of a law, and w, an element of R(m ⊗ x) is Σ_pq b_p S_pq a_q, b being R(m) a and S the
+    /// rotation matrix of x about the axes of the law. That is a quadratic form of x, and the forms M are quartic ones.
+    pub(super) fn over(turns: &Turns, rule: Rule) -> Self {
+        let moments = SquareMoments::of(turns, rule);
+        let axes = turns.about.map(|axis| turns.mean * axis);
+        // R_ka by k, and by a.
+        let elements: [[Element; 3]; 3] = std::array::from_fn(|k| {
+            let ends = axes.map(|axis| axis[k]);
+            std::array::from_fn(|a| Element::of(ends, turns.about.map(|axis| axis[a])))
         });
-        Self { mean: std::array::from_fn(|e| first[e] + off[e]), covariance }
+        let first = forms(&turns.mean);
+        let (mut mean, mut covariance) = (first, [Matrix3::zeros(); 6]);
+        for (e, (a, b)) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].into_iter().enumerate()
+        {
+            let products = elements.each_ref().map(|of_k| of_k[a].times(&of_k[b]));
+            let against = products.each_ref().map(|product| moments.against(product));
+            mean[e] -= Vector3::from(products.each_ref().map(|product| moments.mean(product)));
+            covariance[e] = Matrix3::from_fn(|k, l| products[k].dot(&against[l]));
+        }
+        Self { mean, covariance }
     }
 
     /// Means of the entries, kg·m².
@@ -65,51 +59,6 @@ impl Forms {
         std::array::from_fn(|e| {
             self.covariance[e].dot(&square) + self.mean[e].dot(&(covariance * self.mean[e]))
         })
-    }
-}
-
-/// What the forms of the entries at a node are more than about the first axes, one component after the other.
-struct Off {
-    weight: f64,
-    axes: [[f64; LANES]; 3],
-}
-
-/// Weights, and what they multiply: forms, and their products xx, yy, zz, xy, xz and yz, in the lane of each entry.
-#[derive(Default)]
-struct Sums {
-    total: f64,
-    firsts: [[f64; LANES]; 3],
-    squares: [[f64; LANES]; 6],
-}
-
-/// Adds nodes one after the other, all entries at once, by the machine's vector units.
-struct Add<'a> {
-    offs: &'a [Off],
-    sums: &'a mut Sums,
-}
-
-impl WithSimd for Add<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let Sums { mut total, mut firsts, mut squares } = *self.sums;
-        for Off { weight, axes: [x, y, z] } in self.offs {
-            total += weight;
-            for e in 0..LANES {
-                let [wx, wy, wz] = [x[e] * weight, y[e] * weight, z[e] * weight];
-                firsts[0][e] += wx;
-                firsts[1][e] += wy;
-                firsts[2][e] += wz;
-                squares[0][e] += wx * x[e];
-                squares[1][e] += wy * y[e];
-                squares[2][e] += wz * z[e];
-                squares[3][e] += wx * y[e];
-                squares[4][e] += wx * z[e];
-                squares[5][e] += wy * z[e];
-            }
-        }
-        *self.sums = Sums { total, firsts, squares };
     }
 }
 
@@ -131,33 +80,40 @@ fn forms(q: &UnitQuaternion<f64>) -> [Vector3<f64>; 6] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use gyradius_attitude::UniformAttitude;
     use proptest::prelude::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::Distribution;
 
     proptest! {
-        /// Every vector unit that this machine has, and none.
+        /// The sums over all nodes, of narrow laws and wide ones, with axes of either hand.
         #[test]
-        fn vectors_of_any_length_make_the_same_sums(
-            numbers in prop::collection::vec(prop::array::uniform32(-1.0..1.0f64), 0..20),
-        ) {
-            let offs: Vec<Off> = numbers
-                .iter()
-                .map(|of| Off {
-                    weight: of[0],
-                    axes: [0, 8, 16].map(|from| std::array::from_fn(|e| of[from + e])),
-                })
-                .collect();
-            let summed = |add: &dyn Fn(Add<'_>)| {
-                let mut sums = Sums::default();
-                add(Add { offs: &offs, sums: &mut sums });
-                let Sums { total, firsts, squares } = sums;
-                [&[total], firsts.as_flattened(), squares.as_flattened()].concat()
+        fn forms_are_those_of_the_nodes(seed in any::<u64>(), fine in any::<bool>()) {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let mean: UnitQuaternion<f64> = UniformAttitude.sample(&mut rng);
+            let about: UnitQuaternion<f64> = UniformAttitude.sample(&mut rng);
+            let hand = if rng.random() { 1.0 } else { -1.0 };
+            let turns = Turns {
+                mean,
+                about: [Vector3::x(), Vector3::y(), Vector3::z() * hand].map(|axis| about * axis),
+                variances: [0; 3].map(|_| libm::pow(10.0, rng.random_range(-6.0..2.0))),
+                radial_variance: libm::pow(10.0, rng.random_range(-2.0..2.0)),
             };
-            let expected = summed(&|add| pulp::Scalar::new().vectorize(add));
-            #[cfg(target_arch = "x86_64")]
-            if let Some(simd) = pulp::x86::V3::try_new() {
-                prop_assert_eq!(summed(&|add| Simd::vectorize(simd, add)), expected.clone());
+            let rule = if fine { Rule::FINE } else { Rule::QUICK };
+            let found = Forms::over(&turns, rule);
+            let (nodes, first) = (turns.nodes(rule), forms(&mean));
+            let total: f64 = nodes.iter().map(|(weight, _)| weight).sum();
+            for e in 0..6 {
+                let offs = || nodes.iter().map(|(weight, q)| (weight / total, forms(q)[e] - first[e]));
+                let off: Vector3<f64> = offs().map(|(weight, off)| off * weight).sum();
+                let square: Matrix3<f64> = offs().map(|(weight, off)| off * off.transpose() * weight).sum();
+                let covariance = square - off * off.transpose();
+                // The forms are 1 at most, and at the nodes have the rounding of that.
+                let scale = square.amax();
+                prop_assert!((found.mean[e] - first[e] - off).amax() <= 1e-15 + 1e-13 * scale.sqrt());
+                prop_assert!((found.covariance[e] - covariance).amax() <= 1e-11 * scale);
             }
-            prop_assert_eq!(summed(&|add| pulp::Arch::new().dispatch(add)), expected);
         }
     }
 }

@@ -8,6 +8,7 @@ mod nodes;
 mod parts;
 mod scatter;
 mod solve;
+mod square_moments;
 mod stated_model;
 mod task;
 mod unknowns;

@@ -21,8 +21,9 @@ impl Rule {
     /// To 1e-6, of laws that are wide along one angle at most.
     pub(super) const FINE: Self = Self { reach: 5.5, apart: 1.1, round: 40 };
 
-    /// Sines and cosines of evenly spaced angles up to the `end`, π/2 or π, for a rotation of this variance.
-    fn midpoints(self, variance: f64, end: f64) -> Vec<(f64, f64)> {
+    /// Sines and cosines of evenly spaced angles up to the `end`, π/2 or π, for a rotation of this variance: of those that are not
+    /// negative, and whether their inverse is another one.
+    fn midpoints(self, variance: f64, end: f64) -> Vec<(f64, f64, bool)> {
         let deviation = 0.5 * variance.sqrt();
         let sine = self.reach * deviation;
         let (reach, count) = if sine < 1.0 {
@@ -31,8 +32,13 @@ impl Rule {
         } else {
             (end, if end < PI { self.round / 2 } else { self.round })
         };
-        let angle = |step: u32| reach * (f64::from(2 * step + 1) / f64::from(count) - 1.0);
-        (0..count).map(|step| libm::sincos(angle(step))).collect()
+        (0..count.div_ceil(2))
+            .map(|step| {
+                let from_middle = count - 1 - 2 * step;
+                let (sin, cos) = libm::sincos(reach * f64::from(from_middle) / f64::from(count));
+                (sin, cos, from_middle > 0)
+            })
+            .collect()
     }
 }
 
@@ -49,48 +55,70 @@ pub(super) struct Turns {
     pub(super) radial_variance: f64,
 }
 
+/// A node with parts of one sign, for all that differ from it by the signs of z: the law is the same there.
+pub(super) struct Mirrored {
+    /// Of one of them.
+    pub(super) weight: f64,
+    z: [f64; 3],
+    w: f64,
+    /// Whether z has a mirror image along each axis, and is not zero there.
+    has_image: [bool; 3],
+}
+
+impl Mirrored {
+    /// z², and the weight of all.
+    pub(super) fn squares(&self) -> ([f64; 3], f64) {
+        let images: f64 = self.has_image.map(|has| if has { 2.0 } else { 1.0 }).iter().product();
+        (self.z.map(|z| z * z), self.weight * images)
+    }
+
+    /// Each z.
+    fn images(&self) -> impl Iterator<Item = [f64; 3]> {
+        let Self { z, has_image, .. } = *self;
+        let is_one = move |signs: &u32| (0..3).all(|k| has_image[k] || signs >> k & 1 == 0);
+        let signed =
+            move |signs| std::array::from_fn(|k| if signs >> k & 1 == 0 { z[k] } else { -z[k] });
+        (0..8).filter(is_one).map(signed)
+    }
+}
+
 impl Turns {
-    /// Weighted attitudes.
-    ///
     /// With (z_l, z_j, z_i, w) = (sin a, cos a sin b, cos a cos b sin c, cos a cos b cos c) and i the
     /// widest rotation, surface measure is cos²a cos b da db dc: midpoint rules along a, b and c.
-    pub(super) fn nodes(&self, rule: Rule) -> Vec<(f64, UnitQuaternion<f64>)> {
+    pub(super) fn each_mirrored(&self, rule: Rule, mut each: impl FnMut(&Mirrored)) {
         let v = self.variances;
-        let wide = (0..3).fold(0, |widest, i| if v[i] > v[widest] { i } else { widest });
-        let (j, l) = ((wide + 1) % 3, (wide + 2) % 3);
-        let of_a = rule.midpoints(v[l], FRAC_PI_2);
-        let of_b = rule.midpoints(v[j], FRAC_PI_2);
-        let of_c = rule.midpoints(v[wide], PI);
-        // Angles of either sign weigh the same: one exponential serves eight nodes.
-        let half = |angles: &[(f64, f64)]| angles.len().div_ceil(2);
-        let (half_b, half_c) = (half(&of_b), half(&of_c));
-        let mut weights = Vec::with_capacity(half(&of_a) * half_b * half_c);
-        for &(sin_a, cos_a) in &of_a[..half(&of_a)] {
-            for &(sin_b, cos_b) in &of_b[..half_b] {
-                for &(sin_c, cos_c) in &of_c[..half_c] {
+        let i = (0..3).fold(0, |widest, i| if v[i] > v[widest] { i } else { widest });
+        let (j, l) = ((i + 1) % 3, (i + 2) % 3);
+        let [of_a, of_b, of_c] = [(l, FRAC_PI_2), (j, FRAC_PI_2), (i, PI)]
+            .map(|(axis, end)| rule.midpoints(v[axis], end));
+        for &(sin_a, cos_a, a_has_image) in &of_a {
+            for &(sin_b, cos_b, b_has_image) in &of_b {
+                for &(sin_c, cos_c, c_has_image) in &of_c {
                     let (zl, zj, r) = (sin_a, cos_a * sin_b, cos_a * cos_b);
                     let (zi, w) = (r * sin_c, r * cos_c);
-                    let exponent = 4.0 * (zi * zi / v[wide] + zj * zj / v[j] + zl * zl / v[l])
+                    let exponent = 4.0 * (zi * zi / v[i] + zj * zj / v[j] + zl * zl / v[l])
                         + (w - 1.0) * (w - 1.0) / self.radial_variance;
-                    weights.push(cos_a * r * libm::exp(-0.5 * exponent));
+                    let weight = cos_a * r * libm::exp(-0.5 * exponent);
+                    let (mut z, mut has_image) = ([0.0; 3], [false; 3]);
+                    (z[i], z[j], z[l]) = (zi, zj, zl);
+                    (has_image[i], has_image[j], has_image[l]) =
+                        (c_has_image, b_has_image, a_has_image);
+                    each(&Mirrored { weight, z, w, has_image });
                 }
             }
         }
-        let from_end = |place: usize, angles: &[(f64, f64)]| place.min(angles.len() - 1 - place);
-        let mut nodes = Vec::with_capacity(of_a.len() * of_b.len() * of_c.len());
-        for (a, &(sin_a, cos_a)) in of_a.iter().enumerate() {
-            for (b, &(sin_b, cos_b)) in of_b.iter().enumerate() {
-                let row = (from_end(a, &of_a) * half_b + from_end(b, &of_b)) * half_c;
-                let (zl, zj, r) = (sin_a, cos_a * sin_b, cos_a * cos_b);
-                let across = self.about[j] * zj + self.about[l] * zl;
-                for (c, &(sin_c, cos_c)) in of_c.iter().enumerate() {
-                    let z = across + self.about[wide] * (r * sin_c);
-                    let turn =
-                        UnitQuaternion::new_normalize(Quaternion::new(r * cos_c, z.x, z.y, z.z));
-                    nodes.push((weights[row + from_end(c, &of_c)], self.mean * turn));
-                }
+    }
+
+    /// Weighted attitudes.
+    pub(super) fn nodes(&self, rule: Rule) -> Vec<(f64, UnitQuaternion<f64>)> {
+        let mut nodes = Vec::new();
+        self.each_mirrored(rule, |node| {
+            for z in node.images() {
+                let v: Vector3<f64> = (0..3).map(|k| self.about[k] * z[k]).sum();
+                let turn = UnitQuaternion::new_normalize(Quaternion::new(node.w, v.x, v.y, v.z));
+                nodes.push((node.weight, self.mean * turn));
             }
-        }
+        });
         nodes
     }
 }

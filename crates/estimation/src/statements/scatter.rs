@@ -72,7 +72,7 @@ impl Body {
         if scatter.rotations.amax() == 0.0 {
             return Forms::still(&self.attitude);
         }
-        Forms::over(&self.attitude, &self.turns(scatter).nodes(Rule::QUICK))
+        Forms::over(&self.turns(scatter), Rule::QUICK)
     }
 
     /// Moments of the entries of the law that scatters so.
