@@ -367,3 +367,47 @@ proptest! {
         prop_assert!(passes(percent / 100.0 - 0.001_01) <= 0.9, "{}", line.unwrap());
     }
 }
+
+/// Runs that failed with an infinite number are called by their numbers, as all others are, in any order of rows.
+#[test]
+fn infinite_runs_that_failed_have_their_numbers() {
+    let scratch = scratch();
+    let path = scratch.path().join("it.csv");
+    let requirement: Requirement = "x <= 5 in 50 % at 50 %".parse().unwrap();
+    let text = "model,run,status,x\na,10,ok,1\na,13,bad,inf\na,12,ok,7\na,11,bad,9\na,2,ok,6\n";
+    fs::write(&path, text).unwrap();
+    let table = ForeignTable::open(&path).unwrap();
+    let judged = &Judgement::of_table(&[requirement], &table).unwrap()[0];
+    let worst: Vec<u64> = judged.worst().iter().map(|run| run.run).collect();
+    assert_eq!((judged.first_infinite(), &worst[..2]), (&[13][..], &[12, 2][..]));
+}
+
+proptest! {
+    /// A quotation mark that nothing closes is refused with its line, wherever it is, and one that is closed is not.
+    #[test]
+    fn open_quotation_marks_are_refused(
+        rows in 1..20_usize,
+        at in 0..20_usize,
+        is_closed: bool,
+        number: bool,
+        end in prop::sample::select(vec!["", "\n", "\r\n", "\n# the end", "\n\n", "\n#\n"]),
+    ) {
+        let at = at % rows;
+        let row = |row: usize| {
+            let close = if row != at { "" } else if is_closed { "\"" } else { " " };
+            let open = if row == at { "\"" } else { "" };
+            if number { format!("ok,{open}{row}{close}") } else { format!("{open}a word{close},{row}") }
+        };
+        let text = "note,x\n".to_owned() + &(0..rows).map(row).collect::<Vec<_>>().join("\n") + end;
+        let table = ForeignTable::read_csv("it".as_ref(), text.as_bytes()).unwrap();
+        let judged = Judgement::of_table(&["x <= 5 in 50 % at 50 %".parse().unwrap()], &table);
+        match judged {
+            Ok(judged) => prop_assert_eq!((is_closed, judged[0].counted()), (true, rows as u64), "{}", text),
+            Err(error) => {
+                prop_assert!(!is_closed, "{text}: {error}");
+                let line = format!("line {}: a quotation mark opens a cell", at + 2);
+                prop_assert!(error.to_string().contains(&line), "{text}: {error}");
+            }
+        }
+    }
+}

@@ -174,7 +174,7 @@ impl Alert {
                 }
                 Text::default()
                     .strong(format!("{model}: {failed} of {runs} runs failed"))
-                    .plain(format!(" and are left out of means, deviations and percentiles: {kinds}; see "))
+                    .plain(format!(" and are left out of means, deviations and percentiles of the outcomes, not of what was drawn: {kinds}; see "))
                     .code("status")
                     .plain(" in the run table.")
             }

@@ -179,7 +179,11 @@ impl fmt::Display for Rare {
         let without = estimate.without_excess();
         if without > 0 {
             let quantity = event.quantity();
-            writeln!(f, "  no number    {without} runs have no {quantity}, and are not the event")?;
+            let (runs, are) = match without {
+                1 => ("1 run has".to_owned(), "is"),
+                runs => (format!("{runs} runs have"), "are"),
+            };
+            writeln!(f, "  no number    {runs} no {quantity}, and {are} not the event")?;
         }
         match estimate {
             RareEstimate::Subset(_) => writeln!(f, "  groups       {}", groups.join(", "))?,
@@ -208,8 +212,13 @@ fn in_digits(p: f64, digits: usize) -> String {
 fn of_subset(warning: &SubsetWarning) -> String {
     match warning {
         SubsetWarning::NotReached { replicas } => format!(
-            "{replicas} repetitions found no event: it cannot be, or is rarer than --least, or one group alone must be as \
-             rare as the event; take more runs of a level"
+            "{} found no event: it cannot be, or is rarer than --least, or one group alone must be as \
+             rare as the event; take more runs of a level",
+            if *replicas == 1 {
+                "1 repetition".to_owned()
+            } else {
+                format!("{replicas} repetitions")
+            }
         ),
         SubsetWarning::ChainsHardlyMove { acceptance } => format!(
             "only {:.1} % of the redrawn runs stayed beyond the last level: one group decides nearly alone, and the interval may \

@@ -31,16 +31,16 @@ pub(super) fn read(answer: &[u8], run: u64, outputs: &[Column]) -> Result<Vec<f6
         let problem = "it is a list".to_owned();
         return Err(Trouble::NotJson { problem, line: answer.to_vec() });
     }
-    let in_json;
+    let with_words_in_json;
     let parsed: Answer<'_> = match serde_json::from_slice(answer) {
         Ok(parsed) => parsed,
         Err(error) => {
             let problem = error.to_string();
             let not_json = || Trouble::NotJson { problem, line: answer.to_vec() };
             let (first, text) = with_words(answer).ok_or_else(not_json)?;
-            in_json = text;
-            let (output, value) = (None, first.to_owned());
-            serde_json::from_slice(&in_json).map_err(|_| Trouble::NotFinite {
+            with_words_in_json = text;
+            let (output, value) = (None, first);
+            serde_json::from_slice(&with_words_in_json).map_err(|_| Trouble::NotFinite {
                 output,
                 value,
                 infinite: Vec::new(),
@@ -57,8 +57,7 @@ pub(super) fn read(answer: &[u8], run: u64, outputs: &[Column]) -> Result<Vec<f6
     };
     declared(found, outputs, number, |value| {
         let word = value.get().trim_matches('"');
-        let is_word = WORDS.iter().any(|(known, _)| *known == word);
-        shown(if is_word { word } else { value.get() }.as_bytes(), 40)
+        shown(if in_json(word).is_some() { word } else { value.get() }.as_bytes(), 40)
     })
 }
 
@@ -109,38 +108,61 @@ pub(super) fn declared<N: AsRef<str>, V>(
     named.map(number).collect()
 }
 
-/// The words that Python and C write for numbers that are not finite, and what stands for them in JSON: numbers beyond all others, or a
-/// text.
-const WORDS: [(&str, &str); 6] = [
-    ("NaN", "\"NaN\""),
-    ("-Infinity", "-1e999"),
-    ("Infinity", "1e999"),
-    ("nan", "\"nan\""),
-    ("-inf", "-1e999"),
-    ("inf", "1e999"),
-];
+/// What stands in JSON for a word that programs write for a number that is not finite, in small and large letters and with a sign: a
+/// number beyond all others, or a text.
+fn in_json(word: &str) -> Option<String> {
+    let unsigned = word.strip_prefix(['-', '+']).unwrap_or(word).to_ascii_lowercase();
+    let sign = if word.starts_with('-') { "-" } else { "" };
+    match unsigned.as_str() {
+        "inf" | "infinity" | "1.#inf" => Some(format!("{sign}1e999")),
+        // C may write which NaN it is in brackets.
+        other => {
+            let is_nan = other == "nan" || other.starts_with("nan(");
+            is_nan.then(|| format!("\"{word}\""))
+        }
+    }
+}
+
+/// Whether a byte may stand in such a word, or in a number.
+fn is_of_word(byte: u8) -> bool {
+    byte.is_ascii_alphanumeric() || b"+-.#()".contains(&byte)
+}
 
 /// An answer in which all such words outside of texts are as JSON has them, and the first of them; none if there is none.
-fn with_words(answer: &[u8]) -> Option<(&'static str, Vec<u8>)> {
-    let (mut first, mut in_json) = (None, Vec::with_capacity(answer.len()));
-    let (mut in_text, mut place) = (false, 0);
-    while let Some(&byte) = answer.get(place) {
-        let word = WORDS.into_iter().filter(|_| !in_text);
-        let word = word.into_iter().find(|(word, _)| answer[place..].starts_with(word.as_bytes()));
-        if let Some((word, json)) = word {
-            first = first.or(Some(word));
-            in_json.extend_from_slice(json.as_bytes());
-            place += word.len();
-            continue;
+fn with_words(answer: &[u8]) -> Option<(String, Vec<u8>)> {
+    let (mut first, mut text) = (None, Vec::with_capacity(answer.len()));
+    let mut rest = answer;
+    while let Some(&byte) = rest.first() {
+        let length = match byte {
+            b'"' => length_of_text(rest),
+            _ => rest.iter().take_while(|byte| is_of_word(**byte)).count().max(1),
+        };
+        let (own, behind) = rest.split_at(length);
+        let word = std::str::from_utf8(own).ok().and_then(|word| Some((word, in_json(word)?)));
+        match word {
+            Some((word, json)) => {
+                first = first.or_else(|| Some(word.to_owned()));
+                text.extend_from_slice(json.as_bytes());
+            }
+            None => text.extend_from_slice(own),
         }
-        // What stands after a backslash ends no text.
-        let together = if in_text && byte == b'\\' { 2 } else { 1 };
-        in_text ^= byte == b'"';
-        let end = answer.len().min(place + together);
-        in_json.extend_from_slice(&answer[place..end]);
-        place = end;
+        rest = behind;
     }
-    Some((first?, in_json))
+    Some((first?, text))
+}
+
+/// How many bytes the text has that begins with the first one, with its quotation marks.
+fn length_of_text(bytes: &[u8]) -> usize {
+    let mut place = 1;
+    while let Some(&byte) = bytes.get(place) {
+        place += match byte {
+            b'"' => return place + 1,
+            // What stands after a backslash ends no text.
+            b'\\' => 2,
+            _ => 1,
+        };
+    }
+    bytes.len()
 }
 
 impl<'de: 'a, 'a> Deserialize<'de> for Outputs<'a> {
@@ -177,7 +199,7 @@ mod tests {
     use proptest::prelude::*;
 
     /// What may stand in the place of a number, which number that is, and how it is told.
-    const VALUES: [(&str, Option<f64>, &str); 19] = [
+    const VALUES: [(&str, Option<f64>, &str); 26] = [
         ("-1.5e3", Some(-1500.0), ""),
         ("0", Some(0.0), ""),
         ("1e-999", Some(0.0), ""),
@@ -191,6 +213,13 @@ mod tests {
         ("\"-inf\"", Some(f64::NEG_INFINITY), "-inf"),
         ("NaN", None, "NaN"),
         ("nan", None, "nan"),
+        ("Inf", Some(f64::INFINITY), "inf"),
+        ("-INF", Some(f64::NEG_INFINITY), "-inf"),
+        ("+inf", Some(f64::INFINITY), "inf"),
+        ("+Infinity", Some(f64::INFINITY), "inf"),
+        ("-1.#INF", Some(f64::NEG_INFINITY), "-inf"),
+        ("-nan", None, "-nan"),
+        ("-nan(ind)", None, "-nan(ind)"),
         ("\"NaN\"", None, "NaN"),
         ("null", None, "null"),
         ("\"1.5\"", None, "\"1.5\""),
@@ -248,7 +277,7 @@ mod tests {
             r#"{"run": NaN, "outputs": {"y": 1}}"#,
             "NaN",
             r#"{"outputs": {"y", NaN}}"#,
-            r#"{"outputs": {"y": NaNo}}"#,
+            r#"{"outputs": {"y": [NaN}}"#,
         ] {
             let told = read(answer.as_bytes(), 3, &columns).unwrap_err();
             let Trouble::NotFinite { output: None, value, infinite } = told else {

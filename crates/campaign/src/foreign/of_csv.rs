@@ -10,6 +10,9 @@ use crate::{
 
 /// Rows of a CSV file that are looked at together.
 const TOGETHER: usize = 1 << 14;
+/// What is read behind a table: a line end, for a comment that nothing ends would be a row, and a comment, which is a part of a row only if
+/// a quotation mark is open.
+const BEHIND: &[u8] = b"\n#\n";
 /// What stands in a cell that has no number, in small letters.
 const MISSING: [&str; 7] = ["", "nan", "na", "n/a", "null", "none", "-"];
 
@@ -54,8 +57,7 @@ pub(super) fn reader<'a>(
     // A blank line is skipped, and of one column it is an empty cell.
     let text: Box<dyn Read + 'a> =
         if columns == 1 { Box::new(BlankLines::new(text)) } else { text };
-    // A comment that nothing ends would be a row.
-    let text: Box<dyn Read + 'a> = Box::new(text.chain(&b"\n"[..]));
+    let text: Box<dyn Read + 'a> = Box::new(text.chain(BEHIND));
     let mut builder = csv::ReaderBuilder::new();
     builder.delimiter(separator).comment(Some(b'#')).trim(csv::Trim::All);
     Ok(builder.from_reader(text))
@@ -79,28 +81,59 @@ pub(super) fn scan_csv(
     let status = status(&there);
     let mut some: Vec<Vec<Option<f64>>> = vec![Vec::new(); places.len()];
     let mut row = csv::StringRecord::new();
-    while reader.read_record(&mut row).map_err(|error| broken(path, &error))? {
-        let ended = status.is_none_or(|place| row.get(place) == Some(OK));
-        for (column, (place, numbers)) in places.iter().zip(&mut some).enumerate() {
-            let cell = row.get(*place).unwrap_or_default();
-            let number = number(cell).ok_or_else(|| {
-                let line = row.position().map_or(0, csv::Position::line);
-                let problem =
-                    format!("line {line}, column {:?}: {cell:?} is not a number", there[*place]);
-                ForeignError { path: path.to_owned(), problem }
-            })?;
-            let is_taken = |x: &f64| ended || column >= measured.len() || Failure::has_number(*x);
-            numbers.push(number.filter(is_taken));
+    let mut last = None;
+    loop {
+        let read = reader.read_record(&mut row).map_err(|error| broken(path, &error));
+        if let Ok(false) = read {
+            break;
+        }
+        let line = row.position().map_or(0, csv::Position::line);
+        last = Some((line, reader.position().byte()));
+        let taken = read.and_then(|_| {
+            let ended = status.is_none_or(|place| row.get(place) == Some(OK));
+            for (column, (place, numbers)) in places.iter().zip(&mut some).enumerate() {
+                let cell = row.get(*place).unwrap_or_default();
+                let number = number(cell).ok_or_else(|| {
+                    let problem = format!(
+                        "line {line}, column {:?}: {cell:?} is not a number",
+                        there[*place]
+                    );
+                    ForeignError { path: path.to_owned(), problem }
+                })?;
+                let is_taken =
+                    |x: &f64| ended || column >= measured.len() || Failure::has_number(*x);
+                numbers.push(number.filter(is_taken));
+            }
+            Ok(())
+        });
+        if let Err(error) = taken {
+            return Err(open_quotation(path, &mut reader, last).unwrap_or(error));
         }
         if some.first().is_some_and(|numbers| numbers.len() == TOGETHER) {
             look(&some);
             some.iter_mut().for_each(Vec::clear);
         }
     }
+    if let Some(open) = open_quotation(path, &mut reader, last) {
+        return Err(open);
+    }
     if some.first().is_some_and(|numbers| !numbers.is_empty()) {
         look(&some);
     }
     Ok(())
+}
+
+/// What to say if the last row, from this line to this byte, ends where all does: [`BEHIND`] is in it, and a quotation mark open.
+fn open_quotation(
+    path: &Path,
+    reader: &mut csv::Reader<impl Read>,
+    last: Option<(u64, u64)>,
+) -> Option<ForeignError> {
+    let more = reader.read_record(&mut csv::StringRecord::new());
+    let (line, end) = last.filter(|_| matches!(more, Ok(false)))?;
+    let problem = || format!("line {line}: a quotation mark opens a cell, and none closes it");
+    let is_open = reader.position().byte() == end;
+    is_open.then(|| ForeignError { path: path.to_owned(), problem: problem() })
 }
 
 /// What stands in a cell: a number, or nothing; none if it is something else.

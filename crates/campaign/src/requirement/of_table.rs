@@ -114,7 +114,8 @@ impl Judgement {
         let rows: BTreeSet<u64> = named.map(|run| *run).collect();
         let mut numbers = BTreeMap::new();
         let mut first = 0;
-        let read = table.scan(&[Column::RUN.to_owned()], |columns| {
+        // As they are written: runs that failed are among them.
+        let read = table.scan_beside(&[], &[Column::RUN.to_owned()], |columns| {
             let column = columns.first().map_or(&[][..], Vec::as_slice);
             let end = first + column.len() as u64;
             for row in rows.range(first..end) {

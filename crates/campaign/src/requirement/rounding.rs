@@ -113,9 +113,10 @@ impl Bound {
     }
 }
 
-/// A number to so many digits.
+/// A number to so many digits, or itself if there is none of so many beside it, as beside the largest of all.
 pub(super) fn rounded(x: f64, digits: usize) -> f64 {
-    format!("{x:.*e}", digits.saturating_sub(1)).parse().unwrap_or(x)
+    let nearest = format!("{x:.*e}", digits.saturating_sub(1)).parse().unwrap_or(x);
+    if nearest.is_finite() { nearest } else { x }
 }
 
 /// A number to so many digits, that is not above the number itself.
@@ -255,6 +256,7 @@ mod tests {
         /// A number rounded down is not above the number itself, and near.
         #[test]
         fn numbers_are_rounded_down(x in prop_oneof![-1e3..1e3_f64, -1e-300..1e-300_f64, -f64::MAX..f64::MAX], digits in 1..=17_usize) {
+            prop_assert!(rounded(x, digits).is_finite());
             let down = rounded_down(x, digits);
             let unit = 1.01 * 10_f64.powi(1 - digits as i32) * x.abs();
             prop_assert!(down <= x && x - down <= unit.max(5e-324), "{} {}", down, x);
