@@ -1,5 +1,7 @@
 //! `gyradius draw` of robots into a folder that holds some already: of other options, and the input itself.
 
+use gyradius_formats::RobotFile;
+use gyradius_inertia::Inertia;
 use std::fs;
 
 use crate::draw_robots::{draw, refused};
@@ -134,5 +136,38 @@ fn the_robot_that_was_read_is_never_replaced() {
             let message = refused(&shell, &[&all[..], &["--force"]].concat());
             assert!(message.contains("is what was read"), "{message}");
         }
+    }
+}
+
+/// Copies of a plate are thicker whatever is stated, and have its permissions, in a folder that may be called like a table; a robot
+/// that is no file, or has to be expanded first, is told as what it is.
+#[cfg(unix)]
+#[test]
+fn copies_are_as_the_robot_and_what_is_none_is_told() {
+    use std::os::unix::fs::PermissionsExt;
+    let scratch = Scratch::new();
+    let robot = |inertial: &str| {
+        format!("<robot name=\"a\"><link name=\"base\"/><link name=\"b\">{inertial}</link></robot>")
+    };
+    let plate = "<inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"2\" iyz=\"0\" izz=\"3\"/></inertial>";
+    fs::write(scratch.path("plate.urdf"), robot(plate)).unwrap();
+    fs::set_permissions(scratch.path("plate.urdf"), fs::Permissions::from_mode(0o600)).unwrap();
+    for (stated, amount) in [("--centre", "1cm"), ("--mass", "0%"), ("--axes", "1deg")] {
+        let out = format!("{}.csv/", &stated[2..]);
+        scratch.done(&["draw", "plate.urdf", "-n", "1", stated, amount, "-o", &out], 0);
+        let copy = scratch.path(&out).join("plate-0000.urdf");
+        assert_eq!(fs::metadata(&copy).unwrap().permissions().mode() & 0o777, 0o600);
+        let copies = RobotFile::read(&copy).unwrap();
+        let numbers = copies.links()[0].numbers().unwrap();
+        let inertia = Inertia::try_from(*numbers.inertia()).unwrap();
+        let least = inertia.second_moments().values().into_iter().fold(f64::INFINITY, f64::min);
+        assert!((least / 6e-9 - 1.0).abs() < 1e-6, "{stated}: {least:e}");
+    }
+    fs::write(scratch.path("arm.urdf.xacro"), robot(&plate.replace("\"3\"", "\"${m}\""))).unwrap();
+    for (file, why) in
+        [("arm.urdf.xacro", "expand the file first"), (".", "it is not a regular file")]
+    {
+        let told = refused(&scratch, &[file, "-n", "1", "--mass", "10%"]);
+        assert!(told.contains(why), "{told}");
     }
 }

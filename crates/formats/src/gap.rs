@@ -79,7 +79,7 @@ impl fmt::Display for Gap {
             ),
             GapKind::Macros => write!(
                 f,
-                "{}: expand the file first, with `xacro file.xacro | gyradius check -`",
+                "{}: expand the file first, with `xacro file.xacro > file.urdf`",
                 count("macro or expression", "macros and expressions")
             ),
             GapKind::Included => {

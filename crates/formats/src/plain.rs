@@ -100,8 +100,13 @@ pub fn write_file_as(
     if !must_write(path, bytes, force)? {
         return Ok(false);
     }
-    NewFile::create_as(path, force, permissions)?.finish_with(bytes)?;
-    Ok(true)
+    let new = NewFile::create_as(path, force, permissions);
+    match new.and_then(|new| new.finish_with(bytes)) {
+        Ok(()) => Ok(true),
+        // Another program may have written the same in the meantime.
+        Err(WriteError::Exists(_)) => must_write(path, bytes, force),
+        Err(error) => Err(error),
+    }
 }
 
 #[cfg(all(test, unix))]
@@ -134,6 +139,21 @@ mod tests {
         for (one, other) in same.iter().flat_map(|a| others.iter().map(move |b| (a, b))) {
             assert!(!is_same_file(&at(one), &at(other)) && !is_same_file(&at(other), &at(one)));
         }
+    }
+
+    /// Whoever writes the same bytes at the same time is in nobody's way.
+    #[test]
+    fn two_may_write_the_same() {
+        let scratch = tempfile::tempdir().unwrap();
+        let write_all = |bytes: &[u8]| -> Vec<bool> {
+            let path = |i: u32| scratch.path().join(i.to_string());
+            (0..200).map(|i| write_file(&path(i), bytes, false).unwrap()).collect()
+        };
+        let both = std::thread::scope(|scope| {
+            let two = [(); 2].map(|()| scope.spawn(|| write_all(b"the same")));
+            two.map(|thread| thread.join().unwrap())
+        });
+        assert!(std::iter::zip(&both[0], &both[1]).all(|(one, other)| one != other));
     }
 
     /// Every kind of thing that may be at a path, with and without force.

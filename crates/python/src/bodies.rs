@@ -7,10 +7,7 @@ use nalgebra::{Isometry3, Matrix4, Translation3, Vector3};
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::{Bound, PyResult, Python, pyfunction};
 
-use crate::{
-    error::refused,
-    rows::{attitude, made, row_of, row_of_attitude, rows},
-};
+use crate::rows::{attitude, made, row_of, row_of_attitude, rows};
 
 /// The body of ten numbers.
 pub(crate) fn body(ten: &[f64; 10]) -> Result<MassProperties, String> {
@@ -48,15 +45,13 @@ pub(crate) fn body_transform<'py>(
     })
 }
 
-/// The bodies a little inside of what bodies can have, as robots are written that are drawn about a nominal body.
+/// The bodies a little inside of what bodies can have, as robots are written.
 #[pyfunction]
 pub(crate) fn body_inset<'py>(
     py: Python<'py>,
     bodies: PyReadonlyArray2<'py, f64>,
-    nominal: [f64; 10],
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let nominal = body(&nominal).map_err(refused)?;
-    of_each(py, &bodies, |_, body| Ok(ten(inset(body, &nominal))))
+    of_each(py, &bodies, |_, body| Ok(ten(inset(body))))
 }
 
 /// Two bodies, described in one frame, as one.

@@ -9,13 +9,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::fmt::Display;
 
-use crate::{
-    bodies::{body, ten},
-    error::refused,
-    json,
-    laws::BodyCore,
-    words::in_python,
-};
+use crate::{bodies::body, error::refused, json, laws::BodyCore, words::in_python};
 
 /// Reads what is said of a part: an amount with its unit, or the table of a file.
 fn said<T: DeserializeOwned, E: Display>(
@@ -82,13 +76,13 @@ impl StatementsCore {
         }))
     }
 
-    /// The joint law that they make about a body, the warnings, and the nominal body that it is about.
+    /// The joint law that they make about a body, and the warnings.
     fn about(
         &self,
         py: Python<'_>,
         nominal: [f64; 10],
         inside: Option<&str>,
-    ) -> PyResult<(BodyCore, Vec<String>, [f64; 10])> {
+    ) -> PyResult<(BodyCore, Vec<String>)> {
         let region = inside.map(json::read::<Region>).transpose()?;
         let nominal = written(&nominal).map_err(refused)?;
         py.detach(|| {
@@ -97,7 +91,7 @@ impl StatementsCore {
                 stated = stated.inside(region).map_err(refused)?;
             }
             let warnings = stated.warnings().iter().map(ToString::to_string).collect();
-            Ok((BodyCore::joint_law(stated.law().clone()), warnings, ten(nominal)))
+            Ok((BodyCore::joint_law(stated.law().clone()), warnings))
         })
     }
 }

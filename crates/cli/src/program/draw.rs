@@ -28,6 +28,12 @@ pub(crate) fn draw(arguments: &DrawArgs) -> Result<ExitCode, Box<dyn Error>> {
         if arguments.scenario.as_deref() == Some(Path::new("-")) {
             return Err("-: a robot is not read from standard input: write it into a file first, as with `xacro arm.xacro -o arm.urdf`".into());
         }
+        if let Some(path) =
+            arguments.scenario.as_deref().filter(|path| path.exists() && !path.is_file())
+        {
+            let path = path.display();
+            return Err(format!("{path}: it is not a regular file, and a robot is only read from one: write it into a file first").into());
+        }
         return Err("--mass, --centre, --moments, --axes, --links and --inside are for robots (URDF, MJCF, SDF): a scenario says \
                     itself what is uncertain"
             .into());

@@ -93,7 +93,7 @@ fn write(
 ) -> Result<Option<String>, Box<dyn Error>> {
     let file = file_of(arguments.output.as_deref());
     match file {
-        Some(path) if arguments.format.is_some() || TableFormat::of_path(path).is_some() => {
+        Some(path) if arguments.format.is_some() || has_table_name(path) => {
             let format = format(arguments, file)?;
             refuse_input(path, input)?;
             let mut output = NewFile::create(path, arguments.force)?;
@@ -142,6 +142,11 @@ fn write(
             Ok(None)
         }
     }
+}
+
+/// Whether a path is called like a table, and not like a folder.
+fn has_table_name(path: &Path) -> bool {
+    TableFormat::of_path(path).is_some() && !ends_in_slash(path)
 }
 
 fn ends_in_slash(path: &Path) -> bool {

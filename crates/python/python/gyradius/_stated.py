@@ -182,16 +182,15 @@ def _statements(mass: Any, centre: Any, moments: Any, products: Any, axes: Any, 
 
 
 def _about(body: MassProperties, statements: _core.StatementsCore, inside: Region | None) -> StatedLaw:
-    core, warned, nominal = statements.about(ten_of(body), None if inside is None else json.dumps(inside.form))
-    return _stated(core, core.form(), tuple(warned), tuple(nominal))
+    core, warned = statements.about(ten_of(body), None if inside is None else json.dumps(inside.form))
+    return _stated(core, core.form(), tuple(warned))
 
 
 class StatedLaw(MassPropertiesLaw):
     """The law of mass, mass centre and inertia that statements make: see `gyradius.law`."""
 
-    __slots__ = ("_nominal", "_warnings")
+    __slots__ = ("_warnings",)
 
-    _nominal: tuple[float, ...]
     _warnings: tuple[str, ...]
 
     def rvs(
@@ -201,7 +200,7 @@ class StatedLaw(MassPropertiesLaw):
 
         With `inset`, bodies that lie on the boundary of what bodies can have, such as flat plates and thin rods, are moved inside by 1e-9
         of the trace of their inertia, as the robots are that ``gyradius draw`` writes: programs that compare 64-bit numbers without tolerance
-        take them then. Bodies of which no statement changes the inertia stay as they are. In 32 bits rounding is larger, up to 1e-7 of
+        take them then. In 32 bits rounding is larger, up to 1e-7 of
         the trace: for programs that compare those without tolerance, add 1e-6 of the trace to each of the three moments.
 
         Examples
@@ -221,7 +220,7 @@ class StatedLaw(MassPropertiesLaw):
         drawn = super().rvs(size, rng)
         if not inset:
             return drawn
-        return MassProperties._of(_core.body_inset(drawn._flat(), self._nominal).reshape(*drawn.shape, 10))
+        return MassProperties._of(_core.body_inset(drawn._flat()).reshape(*drawn.shape, 10))
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -229,15 +228,14 @@ class StatedLaw(MassPropertiesLaw):
         return self._warnings
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _stated_again, (*self._made[1], self._warnings, self._nominal)
+        return _stated_again, (*self._made[1], self._warnings)
 
 
-def _stated_again(form: str, warnings: tuple[str, ...], nominal: tuple[float, ...]) -> StatedLaw:
-    return _stated(_core.BodyCore.joint(form), form, warnings, nominal)
+def _stated_again(form: str, warnings: tuple[str, ...]) -> StatedLaw:
+    return _stated(_core.BodyCore.joint(form), form, warnings)
 
 
-def _stated(core: _core.BodyCore, form: str | None, warnings: tuple[str, ...], nominal: tuple[float, ...]) -> StatedLaw:
+def _stated(core: _core.BodyCore, form: str | None, warnings: tuple[str, ...]) -> StatedLaw:
     made = StatedLaw._of(core, "joint", form)
     object.__setattr__(made, "_warnings", warnings)
-    object.__setattr__(made, "_nominal", nominal)
     return made

@@ -1,7 +1,7 @@
 //! The draws of a robot as robots: a file for each.
 
 use gyradius_campaign::{Progress, go_on, threads};
-use gyradius_formats::{WriteError, is_same_file, is_same_robot, must_write, write_file};
+use gyradius_formats::{WriteError, is_same_file, is_same_robot, must_write, write_file_as};
 use rayon::prelude::*;
 use std::{
     fs, io,
@@ -62,6 +62,8 @@ impl RobotDraw<'_> {
         fs::create_dir_all(folder).map_err(fail)?;
         let path = |draw| folder.join(self.file_name(draw));
         let (done, written) = (AtomicU64::new(0), AtomicU64::new(0));
+        // What only some may read stays so in its copies.
+        let permissions = fs::metadata(self.robot.path()).ok().map(|there| there.permissions());
         threads(self.options.threads)?.install(|| {
             draws.clone().into_par_iter().try_for_each(|draw| {
                 let path = path(draw);
@@ -84,7 +86,8 @@ impl RobotDraw<'_> {
             })?;
             draws.clone().into_par_iter().try_for_each(|draw| {
                 go_on(self.options.stop.as_deref())?;
-                let changed = write_file(&path(draw), &self.robot(draw)?, force)?;
+                let (path, copy) = (path(draw), self.robot(draw)?);
+                let changed = write_file_as(&path, &copy, force, permissions.clone())?;
                 written.fetch_add(u64::from(changed), Ordering::Relaxed);
                 progress(done.fetch_add(1, Ordering::Relaxed) + 1);
                 Ok::<(), RobotDrawError>(())

@@ -9,8 +9,8 @@ mod table;
 use gyradius_campaign::{CampaignError, FormatError, Streams, TableError};
 use gyradius_estimation::{StatedBody, StatementError, Statements};
 use gyradius_formats::{
-    Format, LinkNumbers, LinkProblem, RobotError, RobotFile, RobotLink, TOLERANCE, WriteError,
-    judge,
+    Format, GapKind, LinkNumbers, LinkProblem, RobotError, RobotFile, RobotLink, TOLERANCE,
+    WriteError, judge,
 };
 use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties, Region, Repair, RepairMethod};
 use nalgebra::Matrix3;
@@ -181,8 +181,17 @@ impl<'a> RobotDraw<'a> {
         let without = robot.links_without_inertia().iter();
         left.extend(without.map(|name| (name.clone(), LeftBecause::NoInertia)));
         if links.is_empty() {
-            let why = left.iter().find(|(_, why)| *why != LeftBecause::NotPicked);
-            let why = why.map_or_else(String::new, |(name, why)| format!(": \"{name}\": {why}"));
+            // What can be mended comes before what the file says nothing of.
+            let mut picked = left.iter().filter(|(_, why)| *why != LeftBecause::NotPicked);
+            let is_problem = |(_, why): &&(_, _)| matches!(why, LeftBecause::Problem(_));
+            let why = picked.clone().find(is_problem).or_else(|| picked.next());
+            // So does what the file has and nobody can read as it is.
+            let gap = robot.gaps().iter().find(|gap| gap.kind() == GapKind::Macros);
+            let why = match (gap, why) {
+                (Some(gap), _) => format!(": {gap}"),
+                (None, Some((name, why))) => format!(": \"{name}\": {why}"),
+                (None, None) => String::new(),
+            };
             return Err(RobotDrawError::Nothing { format: robot.format(), why });
         }
         Ok(Self { robot, links, left, options })
@@ -237,7 +246,7 @@ impl DrawnLink {
     fn body(&self, draw: u64) -> MassProperties {
         let mut rng = self.streams.run(draw);
         loop {
-            let drawn = inset(self.law.sample(&mut rng), self.law.nominal());
+            let drawn = inset(self.law.sample(&mut rng));
             // Ends: of the trials enough were held. A joint law's own region would judge what was drawn, and this is what is
             // written, a little inside of it.
             if self.region.as_ref().is_none_or(|region| inside::holds(region, &drawn)) {
@@ -248,13 +257,9 @@ impl DrawnLink {
 }
 
 /// What was drawn of a body, moved a little inside of what a body can have, by 1e-9 of the trace of its inertia, as the robots that are
-/// written have it: programs that compare without tolerance, or read fewer digits, take flat plates and thin rods too then. What
-/// has the inertia of the nominal body, because nothing was stated of it, stays as it is.
+/// written have it: programs that compare without tolerance, or read fewer digits, take flat plates and thin rods too then.
 #[must_use]
-pub fn inset(drawn: MassProperties, nominal: &MassProperties) -> MassProperties {
-    if drawn.inertia() == nominal.inertia() {
-        return drawn;
-    }
+pub fn inset(drawn: MassProperties) -> MassProperties {
     let moved = off_boundary(drawn.inertia()).and_then(|inertia| {
         MassProperties::new(drawn.mass_kg(), drawn.mass_centre_m(), inertia).ok()
     });
