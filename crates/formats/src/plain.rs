@@ -100,11 +100,11 @@ pub fn write_file_as(
     if !must_write(path, bytes, force)? {
         return Ok(false);
     }
-    let new = NewFile::create_as(path, force, permissions);
+    let new = NewFile::create_as(path, force, permissions.clone());
     match new.and_then(|new| new.finish_with(bytes)) {
         Ok(()) => Ok(true),
-        // Another program may have written the same in the meantime.
-        Err(WriteError::Exists(_)) => must_write(path, bytes, force),
+        // Another program has written something in the meantime, which may be the same.
+        Err(WriteError::Exists(_)) => write_file_as(path, bytes, force, permissions),
         Err(error) => Err(error),
     }
 }

@@ -136,17 +136,19 @@ impl Context {
         let by_moments = still.variances(&self.body.second_moments(&scatter))[entry].sqrt();
         let mass = model.mass().map_or(0.0, |mass| mass.factor_deviation());
         let by_mass = mass * model.nominal().entries()[entry].abs();
-        if by_axes > nearly {
-            MissedBecause::Axes { alone: by_axes }
-        } else if by_mass > nearly {
-            MissedBecause::Mass { alone: by_mass }
-        } else if entry < 3 {
-            MissedBecause::Tied
-        } else if by_moments > nearly {
-            MissedBecause::Moments { alone: by_moments }
+        let of_axes = (by_axes, MissedBecause::Axes { alone: by_axes });
+        let of_mass = (by_mass, MissedBecause::Mass { alone: by_mass });
+        let of_moments = (by_moments, MissedBecause::Moments { alone: by_moments });
+        let (each, other) = if entry < 3 {
+            (vec![of_axes, of_mass], MissedBecause::Tied)
         } else {
-            MissedBecause::Together
-        }
+            (vec![of_axes, of_mass, of_moments], MissedBecause::Together)
+        };
+        let largest = each.into_iter().max_by(|(a, _), (b, _)| a.total_cmp(b));
+        // What moves it beyond what is stated, and is most of what comes out.
+        let implied = model.implied().deviations()[entry];
+        let enough = largest.filter(|(alone, _)| *alone > nearly && *alone > 0.5 * implied);
+        enough.map_or(other, |(_, because)| because)
     }
 
     /// What keeps a product from more: whatever it would gain the most without.

@@ -2,7 +2,7 @@
 
 use super::*;
 use gyradius_attitude::UniformAttitude;
-use gyradius_inertia::{InertiaMatrix, SecondMoments};
+use gyradius_inertia::{InertiaMatrix, RootSecondMoments, SecondMoments};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use proptest::{prelude::*, test_runner::TestCaseResult};
 use rand::RngExt;

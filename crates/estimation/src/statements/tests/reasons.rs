@@ -59,3 +59,55 @@ fn what_keeps_a_product_from_more_is_what_it_would_gain_by() {
     }
     assert!(told.into_iter().all(|count| count >= 3), "{told:?}");
 }
+
+/// What is said to move an entry more than it may is most of what comes out, and draws of it alone scatter so.
+#[test]
+fn what_moves_an_entry_more_moves_it_alone() {
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    let mut told = [0; 2];
+    for round in 0..60 {
+        let k = [0; 3].map(|_| rng.random_range(1.0..10.0));
+        let about = UniformAttitude.sample(&mut rng);
+        let nominal = Inertia::from_second_moments(SecondMoments::new(k).unwrap(), &about).unwrap();
+        // Its axes by the size of their moments.
+        let (second_moments, attitude) =
+            (nominal.second_moments(), nominal.principal_axes().attitude());
+        let axes = libm::pow(10.0, rng.random_range(-1.0..1.0));
+        let statements = Statements {
+            axes: Some(AxesStatement::each([axes; 3], 1.0).unwrap()),
+            products: products(if round % 2 == 0 { 0.0 } else { 1e-3 }, 1.0),
+            moments: percent(libm::pow(10.0, rng.random_range(-1.0..1.0))),
+            ..Statements::default()
+        };
+        let model = statements.model(&nominal, None).unwrap();
+        for warning in model.warnings() {
+            let StatementWarning::Missed { entry, implied, because, .. } = *warning else {
+                continue;
+            };
+            let (roots, turns) = model.law().clone().into_parts();
+            let mut deviation = |draw: &mut dyn FnMut(&mut ChaCha8Rng) -> Inertia| {
+                let draws: Vec<f64> = (0..2000).map(|_| draw(&mut rng).entries()[entry]).collect();
+                let mean = draws.iter().sum::<f64>() / 2000.0;
+                (draws.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / 1999.0).sqrt()
+            };
+            let (alone, found) = match because {
+                MissedBecause::Axes { alone } => {
+                    told[0] += 1;
+                    let of = |q| Inertia::from_second_moments(second_moments, &q).unwrap();
+                    (alone, deviation(&mut |rng| of(turns.sample(rng))))
+                }
+                MissedBecause::Moments { alone } => {
+                    told[1] += 1;
+                    let of = |k: RootSecondMoments| {
+                        Inertia::from_second_moments(k.squared(), &attitude).unwrap()
+                    };
+                    (alone, deviation(&mut |rng| of(roots.sample(rng))))
+                }
+                _ => continue,
+            };
+            assert!(alone > 0.5 * implied && alone < 1.01 * implied, "{warning}");
+            assert!((found / alone - 1.0).abs() < 0.1, "{warning}: {found:e}");
+        }
+    }
+    assert!(told.into_iter().all(|count| count >= 3), "{told:?}");
+}
