@@ -4,7 +4,7 @@ use nalgebra::{Matrix4, SMatrix, SVector, Vector4};
 
 use super::nodes::{Rule, Turns};
 
-/// Powers of Z₁, Z₂ and Z₃ in polynomials of them, without the constant one, and in linear ones.
+/// Powers of Z₁, Z₂ and Z₃ in quadratic polynomials of them, but for the constant part.
 const QUADRATIC: [[usize; 3]; 9] = [
     [1, 0, 0],
     [0, 1, 0],
@@ -16,6 +16,9 @@ const QUADRATIC: [[usize; 3]; 9] = [
     [0, 1, 1],
     [0, 0, 2],
 ];
+/// Where the products of two Z are among these.
+const PRODUCTS: [[usize; 3]; 3] = [[3, 4, 5], [4, 6, 7], [5, 7, 8]];
+/// Powers in linear polynomials.
 const LINEAR: [[usize; 3]; 4] = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];
 
 /// The other two of three axes, in cyclic order.
@@ -61,22 +64,14 @@ impl Element {
             turns: std::array::from_fn(|axis| e * u[axis] + f * t[axis]),
             all: 0.0,
         };
-        let mut add = |powers: [usize; 3], more: f64| {
-            let place = QUADRATIC.iter().position(|own| *own == powers);
-            place.into_iter().for_each(|place| product.even[place] += more);
-        };
         for i in 0..3 {
             for j in 0..3 {
-                let mut powers = LINEAR[i + 1];
-                powers[j] += 1;
                 // W = 1 − Σ Z.
-                add(powers, e[i + 1] * f[j + 1] - t[i] * u[i]);
+                product.even[PRODUCTS[i][j]] += e[i + 1] * f[j + 1] - t[i] * u[i];
             }
             let [j, k] = others(i);
-            let mut both = LINEAR[j + 1];
-            both[k] += 1;
-            add(both, p[i] * q[i]);
-            add(LINEAR[i + 1], e[0] * f[i + 1] + e[i + 1] * f[0] + t[i] * u[i]);
+            product.even[PRODUCTS[j][k]] += p[i] * q[i];
+            product.even[i] += e[0] * f[i + 1] + e[i + 1] * f[0] + t[i] * u[i];
             let of_w = t[j] * u[k] + t[k] * u[j];
             product.pairs[i] += Vector4::new(of_w, -of_w, -of_w, -of_w);
             product.pairs[i][i + 1] += p[j] * q[k] + p[k] * q[j];
