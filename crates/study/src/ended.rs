@@ -16,19 +16,27 @@ pub struct Ended {
     looks: u64,
     /// Whether that was enough, and not the greatest number of runs.
     pub enough: bool,
+    /// Whether the runs were interrupted: nobody knows yet what ends them.
+    #[serde(default, rename = "interrupted", skip_serializing_if = "std::ops::Not::not")]
+    is_interrupted: bool,
 }
 
 impl Ended {
-    /// Whether the runs were interrupted before the rule ended them or there were as many as there may be.
+    /// Whether the runs were interrupted: nobody knows yet what ends them.
     #[must_use]
     pub fn is_interrupted(&self) -> bool {
-        !self.enough && self.runs < self.until.most_runs()
+        self.is_interrupted
+    }
+
+    /// After so many runs, after which they were interrupted.
+    pub(crate) fn not_yet(until: &Until, runs: u64) -> Self {
+        Self { is_interrupted: true, ..Self::new(until, runs, false) }
     }
 
     /// After so many runs, which were enough or not.
     pub(crate) fn new(until: &Until, runs: u64, enough: bool) -> Self {
         let looks = until.looks().take_while(|look| *look <= runs).count() as u64;
-        Self { until: until.clone(), runs, looks, enough }
+        Self { until: until.clone(), runs, looks, enough, is_interrupted: false }
     }
 
     /// After how many runs of each model they were looked at.
@@ -41,7 +49,7 @@ impl Ended {
 /// In a sentence.
 impl fmt::Display for Ended {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { until, runs, looks, enough } = self;
+        let Self { until, runs, looks, enough, is_interrupted } = self;
         if let Some(there) = until.first_look() {
             write!(
                 f,
@@ -49,7 +57,7 @@ impl fmt::Display for Ended {
             )?;
         }
         let (rule, most, s) = (until.rule(), until.most_runs(), if *looks == 1 { "" } else { "s" });
-        if self.is_interrupted() {
+        if *is_interrupted {
             write!(
                 f,
                 "The runs were interrupted: so far there are {runs} of each model, and with the rule “{rule}” there may be up to {most}."

@@ -301,7 +301,7 @@ pub(crate) fn put_together<C: Subject>(
     let end = blocks.iter().map(|block| block.range().end).max().unwrap_or(scenario.runs());
     let end = end.next_multiple_of(scenario.fleet().map_or(1, Fleet::flights));
     let end = end.min(until.most_runs());
-    let so_far = Ended::new(until, end, false);
+    let so_far = Ended::not_yet(until, end);
     let scenario = scenario.ended_after(end, until.first_look())?;
     do_what_is_left(&scenario, &options, (Doing::Nothing, Some(so_far)), &|_| {}, say)
 }
