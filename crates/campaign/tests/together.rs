@@ -58,7 +58,7 @@ fn shards_that_begin_together_share_the_folder() {
             let contents = campaign.contents(100, &in_place);
             begin.wait();
             thread::sleep(Duration::from_micros(number * 7919 * (round + 1) % 400));
-            Shared::open(&campaign.place, &contents).map(drop).map_err(|e| e.to_string())
+            Shared::open(&campaign.place, &contents).map(Shared::leave).map_err(|e| e.to_string())
         };
         thread::scope(|scope| {
             let opened: Vec<_> = (0..24).map(|number| scope.spawn(move || open(number))).collect();
@@ -66,6 +66,41 @@ fn shards_that_begin_together_share_the_folder() {
                 assert_eq!(shard.join().unwrap(), Ok(()), "round {round}");
             }
         });
+    }
+}
+
+/// Shards that leave without a finished block bind nobody to their campaign, whoever leaves last.
+#[test]
+fn shards_that_did_nothing_leave_no_campaign() {
+    const SHARDS: u32 = 6;
+    let scratch = scratch();
+    let pool = threads(Some(1)).unwrap();
+    for round in 0..50 {
+        let place = scratch.path().join(round.to_string());
+        let begin = Barrier::new(SHARDS as usize);
+        let share = &|seed: u64, number: u32| {
+            let campaign = Campaign { place: place.clone(), seed, block_runs: 16 };
+            let in_place = OnceLock::new();
+            let shared = Shared::open(&campaign.place, &campaign.contents(100, &in_place)).unwrap();
+            let shard = Shard::new(number + 1, SHARDS).unwrap();
+            let mark = format!("{seed} 100");
+            let blocks = shared.blocks((&campaign.identity(), &mark), 100, shard, &pool);
+            let begun = blocks.map(drop).map_err(|error| error.to_string());
+            shared.leave();
+            begun
+        };
+        thread::scope(|scope| {
+            for number in 0..SHARDS {
+                let begin = &begin;
+                scope.spawn(move || {
+                    begin.wait();
+                    assert_eq!(share(0, number), Ok(()), "round {round}");
+                });
+            }
+        });
+        assert_eq!(share(1, 0), Ok(()), "round {round}");
+        // Whoever made the folder may have left before.
+        assert!(!place.join(".gyradius/campaign/identity.json").exists());
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::{fs, process::Stdio};
 
-use crate::scratch::{Scratch, content, done, one_model};
+use crate::scratch::{Scratch, content, done, files, one_model};
 
 /// Three processes, one of which is killed: what is there is told at every time, a report is made of part of the runs, and
 /// the study is the same to the byte as that of one process.
@@ -211,4 +211,31 @@ fn runs_of_an_unfinished_study_are_replayed() {
     assert!(replay("35", "proposed", 0).contains("as in it/runs/proposed/"));
     fs::remove_file(scratch.path("it/scenario.toml")).unwrap();
     replay("35", "proposed", 2);
+}
+
+/// A shard that is refused, or has no runs, leaves a folder as it was: of a finished study, empty, or none.
+#[test]
+fn what_a_shard_does_not_do_binds_nobody() {
+    let scratch = Scratch::new();
+    scratch.done(&["study", "--runs", "40", "--out", "done", "-q"], 0);
+    let before = files(&scratch.path("done"));
+    let too_many = ["study", "--runs", "1e12", "--shard", "1/2", "-q", "--out", "done"];
+    let told = scratch.run(&too_many);
+    assert_eq!(told.status.code(), Some(2), "{told:?}");
+    assert_eq!(files(&scratch.path("done")), before);
+    scratch.done(&["status", "done"], 0);
+    let simulator = "name = \"none\"\nruns = 600\n[simulation]\ncommand = [\"no-such-program\"]\n[[simulation.outputs]]\nname = \"x\"\n\
+                     [[quantities]]\nname = \"q\"\nlaw = { law = \"normal\", mean = 0.0, sigma = 1.0 }\n";
+    fs::write(scratch.path("none.toml"), simulator).unwrap();
+    fs::create_dir(scratch.path("empty")).unwrap();
+    for out in ["empty", "new"] {
+        let share = ["study", "--scenario", "none.toml", "--shard", "1/2", "-q", "--out", out];
+        let told = scratch.run(&share);
+        assert_eq!(told.status.code(), Some(2), "{told:?}");
+        assert_eq!(scratch.path(out).exists(), out == "empty");
+    }
+    assert_eq!(fs::read_dir(scratch.path("empty")).unwrap().count(), 0);
+    scratch.done(&["study", "--runs", "40", "--shard", "90/100", "--out", "new", "-q"], 0);
+    scratch
+        .done(&["study", "--runs", "40", "--seed", "5", "--shard", "1/1", "--out", "new", "-q"], 0);
 }

@@ -126,6 +126,12 @@ impl Hidden {
         Ok((record, Some(sha256(&text))))
     }
 
+    /// The same, as what was made for this.
+    pub(super) fn made_anew(mut self) -> Self {
+        (self.made, self.made_lock) = (true, true);
+        self
+    }
+
     /// Takes it away again if it was made for nothing.
     pub(super) fn remove_if_new(&self) {
         // What stays is hidden and harms nothing.

@@ -1,16 +1,19 @@
 //! A folder that several processes fill with blocks of runs at the same time, each with its share.
 
 use std::{
+    io,
     path::{Path, PathBuf},
     thread,
     time::Duration,
 };
 
-use super::{Contents, Folder, FolderError, Problem, hidden::Hidden};
+use super::{Contents, Folder, FolderError, Problem, area::Area, hidden::Hidden};
 
 /// How often and how long others are waited for that hold the folder alone for a moment.
 const TRIES: u32 = 500;
 const WAIT: Duration = Duration::from_millis(20);
+/// How often a folder is made again that others remove.
+const PASSING: u32 = 50;
 
 /// A folder whose lock is shared with other processes that fill it. Those who put a campaign together want it alone, and
 /// are refused meanwhile.
@@ -19,6 +22,9 @@ pub struct Shared {
     pub(super) what: &'static str,
     pub(super) place: PathBuf,
     pub(super) hidden: Hidden,
+    /// Whether the folder did not exist before, and whether no campaign was in it.
+    is_made: bool,
+    is_new: bool,
 }
 
 impl Shared {
@@ -28,17 +34,21 @@ impl Shared {
     /// # Errors
     /// The folder holds something else, cannot be written, or somebody has it alone.
     pub fn open(place: &Path, contents: &Contents<'_>) -> Result<Self, FolderError> {
+        let (is_made, is_new) = (!place.exists(), !Hidden::is_in(place));
         // Alone if nobody else is there.
         match Folder::prepare(place, contents, false) {
             Ok(folder) => folder.leave(),
             Err(FolderError { problem: Problem::Busy, .. }) => {}
+            Err(error) if is_passing(&error.problem, place) => {}
             Err(error) => return Err(error),
         }
         let failed = |problem: Problem| FolderError { path: place.to_owned(), problem };
-        for _ in 0..TRIES {
-            super::make_folder(place).map_err(failed)?;
-            match Hidden::share(place) {
+        for tries in 0..TRIES {
+            match super::make_folder(place).and_then(|()| Hidden::share(place)) {
                 Err(Problem::Busy) => thread::sleep(WAIT),
+                Err(problem) if tries < PASSING && is_passing(&problem, place) => {
+                    thread::sleep(WAIT);
+                }
                 Err(problem) => return Err(failed(problem)),
                 Ok(hidden) => {
                     // Asked again: who was there meanwhile may have put something else in place.
@@ -47,10 +57,31 @@ impl Shared {
                     });
                     still.map_err(failed)?;
                     let (what, place) = (contents.what, place.to_owned());
-                    return Ok(Self { what, place, hidden });
+                    return Ok(Self { what, place, hidden, is_made, is_new });
                 }
             }
         }
         Err(failed(Problem::Busy))
     }
+
+    /// Leaves it to others. If nobody is at work there and no block was finished, nobody is bound to a campaign that was refused, or of
+    /// which this share had no runs: no trace of it stays.
+    pub fn leave(self) {
+        let Self { place, hidden, is_made, is_new, .. } = self;
+        drop(hidden);
+        let Ok(hidden) = Hidden::lock(&place) else { return };
+        let area = Area::of(&place);
+        if area.recorded().is_ok_and(|blocks| blocks.is_empty()) && area.clear().is_ok() {
+            let hidden = if is_new { hidden.made_anew() } else { hidden };
+            super::abandon(&hidden, is_made);
+        }
+    }
+}
+
+/// Whether a folder that is missing may only have been removed in this moment, by who had done nothing in it.
+fn is_passing(problem: &Problem, place: &Path) -> bool {
+    use io::ErrorKind::{AlreadyExists, NotFound};
+    let is_missing = matches!(problem, Problem::NoFolder)
+        || matches!(problem, Problem::Io(e) if matches!(e.kind(), NotFound | AlreadyExists));
+    is_missing && (place.is_dir() || !place.is_symlink() && !place.exists())
 }
