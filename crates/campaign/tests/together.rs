@@ -58,7 +58,7 @@ fn shards_that_begin_together_share_the_folder() {
             let contents = campaign.contents(100, &in_place);
             begin.wait();
             thread::sleep(Duration::from_micros(number * 7919 * (round + 1) % 400));
-            Shared::open(&campaign.place, &contents).map(Shared::leave).map_err(|e| e.to_string())
+            Shared::open(&campaign.place, &contents).map(drop).map_err(|e| e.to_string())
         };
         thread::scope(|scope| {
             let opened: Vec<_> = (0..24).map(|number| scope.spawn(move || open(number))).collect();
@@ -85,9 +85,7 @@ fn shards_that_did_nothing_leave_no_campaign() {
             let shard = Shard::new(number + 1, SHARDS).unwrap();
             let mark = format!("{seed} 100");
             let blocks = shared.blocks((&campaign.identity(), &mark), 100, shard, &pool);
-            let begun = blocks.map(drop).map_err(|error| error.to_string());
-            shared.leave();
-            begun
+            blocks.map(drop).map_err(|error| error.to_string())
         };
         thread::scope(|scope| {
             for number in 0..SHARDS {

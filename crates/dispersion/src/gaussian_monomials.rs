@@ -25,7 +25,6 @@ struct Expected<'a, const N: usize> {
     /// Ca.
     tilt: SVector<f64, N>,
     exponential: f64,
-    product: f64,
 }
 
 impl<'a, const N: usize> Expected<'a, N> {
@@ -41,14 +40,12 @@ impl<'a, const N: usize> Expected<'a, N> {
             tilt += column * exponent;
         }
         let exponent: f64 = (0..N).map(|i| a[i] * (mean[i] + 0.5 * tilt[i])).sum();
-        let mut expected = Self { monomial, tilt, exponential: libm::exp(exponent), product: 1.0 };
-        let factors: Vec<Factor> = expected.factors(true, mean, &SVector::zeros()).collect();
-        expected.product = Product::of(&factors, c).all;
-        expected
+        Self { monomial, tilt, exponential: libm::exp(exponent) }
     }
 
-    fn mean(&self) -> f64 {
-        self.exponential * self.product
+    fn mean(&self, mean: &SVector<f64, N>, c: &SMatrix<f64, N, N>) -> f64 {
+        let factors: Vec<Factor> = self.factors(true, mean, &SVector::zeros()).collect();
+        self.exponential * Product::of(&factors, c).all
     }
 
     /// Its factors, of which another monomial shifts the means.
@@ -129,7 +126,7 @@ pub(crate) fn moments<const N: usize, const M: usize>(
     let expected = sums
         .each_ref()
         .map(|sum| sum.iter().map(|monomial| Expected::new(monomial, mean, c)).collect::<Vec<_>>());
-    let means = SVector::from_fn(|e, _| expected[e].iter().map(Expected::mean).sum());
+    let means = SVector::from_fn(|e, _| expected[e].iter().map(|it| it.mean(mean, c)).sum());
     let mut covariance = SMatrix::<f64, M, M>::zeros();
     for e in 0..M {
         for f in 0..=e {
@@ -198,6 +195,17 @@ mod tests {
         sum
     }
 
+    /// An exponent and the factors of each of two monomials.
+    fn parts() -> impl Strategy<Value = (Vec<(usize, f64)>, Vec<Vec<usize>>)> {
+        let exponent = (0..4_usize, prop::sample::select(vec![0.0, 1.0, 2.0]));
+        let factors = prop::collection::vec(0..4_usize, 0..=2);
+        (prop::collection::vec(exponent, 2), prop::collection::vec(factors, 2))
+    }
+
+    fn monomials(exponents: &[(usize, f64)], factors: &[Vec<usize>]) -> [GaussianMonomial<4>; 2] {
+        std::array::from_fn(|k| GaussianMonomial::new(&exponents[k..=k], &factors[k]))
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(48))]
 
@@ -207,13 +215,11 @@ mod tests {
             mean in prop::array::uniform4(-1.0..1.0_f64),
             root in prop::array::uniform16(-0.4..0.4_f64),
             narrow in 0.0..4.0_f64,
-            exponents in prop::collection::vec((0..4_usize, prop::sample::select(vec![0.0, 1.0, 2.0])), 2),
-            factors in prop::collection::vec(prop::collection::vec(0..4_usize, 0..=2), 2),
+            (exponents, factors) in parts(),
         ) {
             let root = Matrix4::from_row_slice(&root) * 10_f64.powf(-narrow);
             let (mean, c) = (Vector4::from(mean), root * root.transpose());
-            let all: [GaussianMonomial<4>; 2] =
-                std::array::from_fn(|k| GaussianMonomial::new(&exponents[k..=k], &factors[k]));
+            let all = monomials(&exponents, &factors);
             let first = all.each_ref().map(|one| by_quadrature(one, &mean, &root));
             let (means, covariance) = moments(&all.map(|one| vec![one]), &mean, &c);
             let size = first[0].abs().max(1e-3) * first[1].abs().max(1e-3);
@@ -237,13 +243,11 @@ mod tests {
             mean in prop::array::uniform4(0.1..1.0_f64),
             root in prop::array::uniform16(-0.4..0.4_f64),
             narrow in 9.0..100.0_f64,
-            exponents in prop::collection::vec((0..4_usize, prop::sample::select(vec![0.0, 1.0, 2.0])), 2),
-            factors in prop::collection::vec(prop::collection::vec(0..4_usize, 0..=2), 2),
+            (exponents, factors) in parts(),
         ) {
             let root = Matrix4::from_row_slice(&root) * 10_f64.powf(-narrow);
             let (mean, c) = (Vector4::from(mean), root * root.transpose());
-            let all: [GaussianMonomial<4>; 2] =
-                std::array::from_fn(|k| GaussianMonomial::new(&exponents[k..=k], &factors[k]));
+            let all = monomials(&exponents, &factors);
             let derivatives = all.each_ref().map(|one| {
                 let exponent: f64 = (0..4).map(|i| one.exponents[i] * mean[i]).sum();
                 let value = exponent.exp() * one.factors.iter().map(|i| mean[*i]).product::<f64>();

@@ -339,8 +339,8 @@ pub(crate) mod tests {
         #[test]
         fn attitudes_become_rotations(q in any_attitude(), off in -9e-10..9e-10f64) {
             let rotation = rotation_matrix(&UnitQuaternion::new_unchecked(*q * (1.0 + off))).unwrap();
-            prop_assert!((rotation * rotation.transpose() - Matrix3::identity()).amax() < 4e-15);
-            prop_assert!((rotation - q.to_rotation_matrix().matrix()).amax() < 4e-15);
+            prop_assert!((rotation * rotation.transpose() - Matrix3::identity()).amax() < 2e-15);
+            prop_assert!((rotation - q.to_rotation_matrix().matrix()).amax() < 2e-15);
             let long = UnitQuaternion::new_unchecked(*q * 1.01);
             let Err(InertiaMatrixError::Attitude { norm }) = rotation_matrix(&long) else {
                 return Err(TestCaseError::fail("a norm of 1.01"));

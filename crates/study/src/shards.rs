@@ -67,23 +67,11 @@ pub(crate) fn run_shard<C: Subject>(
     say: &dyn Fn(Notice),
 ) -> Result<(), StudyError> {
     check(scenario)?;
-    let contents = contents(scenario);
-    let folder = Shared::open(&options.place(scenario.name()), &contents)?;
-    let done = run_share(scenario, options, (shard, &folder), progress, say);
-    folder.leave();
-    done
-}
-
-fn run_share<C: Subject>(
-    scenario: &C,
-    options: &Options,
-    (shard, folder): (Shard, &Shared),
-    progress: Progress<'_>,
-    say: &dyn Fn(Notice),
-) -> Result<(), StudyError> {
     let threads = threads(options.threads)?;
     let models = scenario.prepare(options.stop.as_ref())?;
     let simulations = scenario.simulations(&models)?;
+    let contents = contents(scenario);
+    let folder = Shared::open(&options.place(scenario.name()), &contents)?;
     check_columns(scenario)?;
     let begun = (&identity(scenario), scenario.to_toml());
     let place = options.place(scenario.name());

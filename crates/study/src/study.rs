@@ -98,7 +98,8 @@ pub(crate) fn do_what_is_left<C: Subject>(
     let plan = plan(scenario, options, doing);
     let left = to_be_done(&simulations, plan, (&folder, &blocks), say)?;
     // What a rule ended was held against its runs, and retried, before the rule was asked.
-    let is_ended = ended.as_ref().is_some_and(|ended| !ended.is_interrupted());
+    let is_interrupted = ended.as_ref().is_some_and(Ended::is_interrupted);
+    let is_ended = ended.is_some() && !is_interrupted;
     if !is_ended {
         same_as_before(scenario, &simulations, (&place, &blocks), &threads)
             .inspect_err(|_| blocks.abandon())?;
@@ -114,8 +115,7 @@ pub(crate) fn do_what_is_left<C: Subject>(
         say(Notice::Again(done.inspect_err(|_| blocks.abandon())?));
     }
     // A complete study that is being extended stays one until all of the runs are there: its blocks and what tells of them.
-    let is_begun = left > 0 || ended.is_some() && !is_ended;
-    let incomplete = doing == Doing::Nothing && is_begun;
+    let incomplete = doing == Doing::Nothing && (left > 0 || is_interrupted);
     let manifest = incomplete.then(|| MANIFEST.to_owned());
     let published = blocks.published().into_iter().chain(manifest);
     // What is not all kept is written anew.

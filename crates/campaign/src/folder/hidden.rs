@@ -126,6 +126,12 @@ impl Hidden {
         Ok((record, Some(sha256(&text))))
     }
 
+    /// Lets others have it.
+    pub(super) fn unlock(&self) {
+        // Closing is not enough while a child process that has just been started holds the same file.
+        let _ = self.lock.unlock();
+    }
+
     /// The same, as what was made for this.
     pub(super) fn made_anew(mut self) -> Self {
         (self.made, self.made_lock) = (true, true);
@@ -147,8 +153,7 @@ impl Hidden {
 
 impl Drop for Hidden {
     fn drop(&mut self) {
-        // Closing is not enough while a child process that has just been started holds the same file.
-        let _ = self.lock.unlock();
+        self.unlock();
     }
 }
 

@@ -133,10 +133,12 @@ impl<'a> Folder<'a> {
         force: bool,
     ) -> Result<Self, FolderError> {
         let refused = |problem: Problem| FolderError { path: place.to_owned(), problem };
-        let made = !place.exists();
-        if !made && !place.is_dir() {
-            return Err(refused(Problem::NoFolder));
-        }
+        // Asked once: another shard may take the folder away between two questions.
+        let made = match fs::metadata(place) {
+            Ok(there) if there.is_dir() => false,
+            Ok(_) => return Err(refused(Problem::NoFolder)),
+            Err(_) => true,
+        };
         if !made && !Hidden::is_in(place) {
             // Before the first file is made in a folder that is not this program's.
             check(place, contents, &Record::default(), force).map_err(refused)?;

@@ -1,7 +1,7 @@
 //! A folder that several processes fill with blocks of runs at the same time, each with its share.
 
 use std::{
-    io,
+    fs, io,
     path::{Path, PathBuf},
     thread,
     time::Duration,
@@ -43,19 +43,22 @@ impl Shared {
             Err(error) => return Err(error),
         }
         let failed = |problem: Problem| FolderError { path: place.to_owned(), problem };
+        // Asked again with the lock: who was there meanwhile may have put something else in place.
+        let share = || {
+            super::make_folder(place)?;
+            let hidden = Hidden::share(place)?;
+            let (record, _) = hidden.record(contents.what)?;
+            super::check(hidden.place(), contents, &record, false)?;
+            Ok(hidden)
+        };
         for tries in 0..TRIES {
-            match super::make_folder(place).and_then(|()| Hidden::share(place)) {
+            match share() {
                 Err(Problem::Busy) => thread::sleep(WAIT),
                 Err(problem) if tries < PASSING && is_passing(&problem, place) => {
                     thread::sleep(WAIT);
                 }
                 Err(problem) => return Err(failed(problem)),
                 Ok(hidden) => {
-                    // Asked again: who was there meanwhile may have put something else in place.
-                    let still = hidden.record(contents.what).and_then(|(record, _)| {
-                        super::check(hidden.place(), contents, &record, false)
-                    });
-                    still.map_err(failed)?;
                     let (what, place) = (contents.what, place.to_owned());
                     return Ok(Self { what, place, hidden, is_made, is_new });
                 }
@@ -63,17 +66,18 @@ impl Shared {
         }
         Err(failed(Problem::Busy))
     }
+}
 
-    /// Leaves it to others. If nobody is at work there and no block was finished, nobody is bound to a campaign that was refused, or of
-    /// which this share had no runs: no trace of it stays.
-    pub fn leave(self) {
-        let Self { place, hidden, is_made, is_new, .. } = self;
-        drop(hidden);
-        let Ok(hidden) = Hidden::lock(&place) else { return };
-        let area = Area::of(&place);
+/// If nobody else is at work there and no block was finished, nobody is bound to a campaign that was refused, or of which this share
+/// had no runs: no trace of it stays.
+impl Drop for Shared {
+    fn drop(&mut self) {
+        self.hidden.unlock();
+        let Ok(hidden) = Hidden::lock(&self.place) else { return };
+        let area = Area::of(&self.place);
         if area.recorded().is_ok_and(|blocks| blocks.is_empty()) && area.clear().is_ok() {
-            let hidden = if is_new { hidden.made_anew() } else { hidden };
-            super::abandon(&hidden, is_made);
+            let hidden = if self.is_new { hidden.made_anew() } else { hidden };
+            super::abandon(&hidden, self.is_made);
         }
     }
 }
@@ -83,5 +87,10 @@ fn is_passing(problem: &Problem, place: &Path) -> bool {
     use io::ErrorKind::{AlreadyExists, NotFound};
     let is_missing = matches!(problem, Problem::NoFolder)
         || matches!(problem, Problem::Io(e) if matches!(e.kind(), NotFound | AlreadyExists));
-    is_missing && (place.is_dir() || !place.is_symlink() && !place.exists())
+    // Asked once: between two questions it may come and go.
+    let may_come = match fs::symlink_metadata(place) {
+        Ok(there) => there.is_dir() || there.is_symlink() && place.is_dir(),
+        Err(error) => error.kind() == NotFound,
+    };
+    is_missing && may_come
 }

@@ -83,6 +83,8 @@ impl Mirrored {
 }
 
 impl Turns {
+    /// Calls a function with each node of a rule, once for all that are its mirror images.
+    ///
     /// With (z_l, z_j, z_i, w) = (sin a, cos a sin b, cos a cos b sin c, cos a cos b cos c) and i the
     /// widest rotation, surface measure is cos²a cos b da db dc: midpoint rules along a, b and c.
     pub(super) fn each_mirrored(&self, rule: Rule, mut each: impl FnMut(&Mirrored)) {

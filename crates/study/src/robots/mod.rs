@@ -181,17 +181,13 @@ impl<'a> RobotDraw<'a> {
         let without = robot.links_without_inertia().iter();
         left.extend(without.map(|name| (name.clone(), LeftBecause::NoInertia)));
         if links.is_empty() {
-            // What can be mended comes before what the file says nothing of.
+            // What can be mended is told before links without an inertia: macros that are to be expanded, and numbers that cannot be read.
+            let macros = robot.gaps().iter().find(|gap| gap.kind() == GapKind::Macros);
             let mut picked = left.iter().filter(|(_, why)| *why != LeftBecause::NotPicked);
             let is_problem = |(_, why): &&(_, _)| matches!(why, LeftBecause::Problem(_));
-            let why = picked.clone().find(is_problem).or_else(|| picked.next());
-            // So does what the file has and nobody can read as it is.
-            let gap = robot.gaps().iter().find(|gap| gap.kind() == GapKind::Macros);
-            let why = match (gap, why) {
-                (Some(gap), _) => format!(": {gap}"),
-                (None, Some((name, why))) => format!(": \"{name}\": {why}"),
-                (None, None) => String::new(),
-            };
+            let link = picked.clone().find(is_problem).or_else(|| picked.next());
+            let of_link = || link.map(|(name, why)| format!(": \"{name}\": {why}"));
+            let why = macros.map(|gap| format!(": {gap}")).or_else(of_link).unwrap_or_default();
             return Err(RobotDrawError::Nothing { format: robot.format(), why });
         }
         Ok(Self { robot, links, left, options })
