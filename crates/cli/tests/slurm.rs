@@ -5,7 +5,7 @@ use std::{
     fs,
     os::unix::fs::PermissionsExt,
     path::Path,
-    process::{Command, Output},
+    process::{Command, Output, Stdio},
 };
 
 use crate::scratch::{Scratch, content, files, text};
@@ -39,6 +39,15 @@ else
     echo "$code" >> "$RECORD/codes"
 fi
 echo "$id;cluster"
+"#;
+
+/// A scenario of a simulator of the user's own.
+const SIMULATED: &str = r#"
+name = "o"
+runs = 4
+simulation.SIMULATION
+simulation.outputs = [{ name = "x" }]
+quantities = [{ name = "y", law = { law = "normal", mean = 2.0, sigma = 0.1 } }]
 "#;
 
 /// A folder with a stand-in for sbatch.
@@ -160,6 +169,25 @@ fn a_script_does_a_study_and_then_what_is_missing() {
     cluster.submit(&script);
     assert!(cluster.codes().starts_with("2 2 2 "));
 
+    // An array whose report is refused, and an answer that is no number.
+    for (refuses, answer, expected) in [
+        ("dependency", "12;cluster", "array job 12 is submitted: the report is not submitted."),
+        ("nothing", "", "sbatch printed \"\" in the place of the number of the array job"),
+        ("nothing", "Submitted 12", "sbatch printed \"Submitted 12\" in the place"),
+    ] {
+        let sbatch = format!(
+            "#!/bin/bash\ncat > /dev/null\nif [[ \"$*\" == *{refuses}* ]]; then exit 3; fi\necho '{answer}'\n"
+        );
+        fs::write(scratch.path("bin/sbatch"), sbatch).unwrap();
+        let said = cluster.submit(&script);
+        assert_eq!(said.status.code(), Some(1));
+        assert!(said.stdout.is_empty() && text(&said).contains(expected), "{}", text(&said));
+        // The command that it tells makes the report, wherever it is called.
+        let command = text(&said).split_once(":\n  ").unwrap().1.to_owned();
+        let report = Command::new("bash").args(["-c", &command]).current_dir("/").output().unwrap();
+        assert!(report.status.success(), "{command}: {}", text(&report));
+    }
+
     // Without sbatch, nothing is said to be submitted.
     let none = Command::new("/bin/bash").arg(&script).env("PATH", "/nowhere").output().unwrap();
     assert!(!none.status.success() && none.stdout.is_empty());
@@ -210,6 +238,17 @@ fn every_script_is_read_by_bash() {
 fn what_cannot_be_submitted_is_refused() {
     let scratch = Scratch::new();
     fs::write(scratch.path("there"), "mine").unwrap();
+    for (name, simulation) in [
+        ("simulator.toml", r#"command = ["/nowhere/simulator"]"#),
+        ("function.toml", r#"function = "mine""#),
+    ] {
+        fs::write(scratch.path(name), SIMULATED.replace("SIMULATION", simulation)).unwrap();
+    }
+    assert!(scratch.run(&["study", "--runs=4", "--out=o"]).status.success());
+    let outside = fs::read_to_string(scratch.path("o/scenario.toml")).unwrap()
+        + "\n[[models]]\nname = \"own\"\nlaw = \"outside\"\n";
+    fs::remove_dir_all(scratch.path("o")).unwrap();
+    fs::write(scratch.path("outside.toml"), outside).unwrap();
     let refused = |arguments: &[&str]| {
         let output = scratch.run(&[&["slurm"], arguments].concat());
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
@@ -236,12 +275,47 @@ fn what_cannot_be_submitted_is_refused() {
         (&["--out", "x", "-o", "nowhere/go.sh"], "nowhere/go.sh"),
         (&["--out", "x", "--scenario", "there", "-o", "there", "--force"], "there"),
         (&["--out", "x", "--force"], "--output"),
+        (&["--out", "there"], "/there: it is not a folder"),
+        (&["--out", "there/deep/x"], "/there is not a folder"),
+        (&["--out", "x", "--logs", "there"], "/there: it is not a folder"),
+        (&["--out", "x", "--scenario", "simulator.toml", "--shards=1"], "--shards and --time"),
     ] {
         let message = refused(arguments);
         assert!(message.contains(expected), "{arguments:?}: {message}");
     }
     assert_eq!(fs::read_to_string(scratch.path("there")).unwrap(), "mine");
-    assert_eq!(files(scratch.folder()).len(), 1);
+    assert_eq!(files(scratch.folder()).len(), 4);
+    // What no task could do, with everything given that need not be timed.
+    for (scenario, expected) in [
+        ("outside.toml", "a program's own, which no file holds"),
+        ("function.toml", "is a function of the program that made the study"),
+    ] {
+        let message = refused(&["--out=x", "--shards=1", "--time=9", "--scenario", scenario]);
+        assert!(message.contains(expected), "{scenario}: {message}");
+    }
+    for regular in [true, false] {
+        let mut command = scratch.command(&["slurm", "--out=x", "--scenario=/dev/stdin"]);
+        if regular {
+            command.stdin(fs::File::open(scratch.path("simulator.toml")).unwrap());
+        } else {
+            let mut cat = Command::new("cat")
+                .arg(scratch.path("simulator.toml"))
+                .stdout(Stdio::piped())
+                .spawn()
+                .unwrap();
+            command.stdin(cat.stdout.take().unwrap());
+        }
+        let said = command.output().unwrap();
+        assert_eq!(said.status.code(), Some(2));
+        let expected = if regular { "it is not a file that stays" } else { "not a regular file" };
+        assert!(text(&said).contains(expected), "{}", text(&said));
+    }
+    // The nodes may have what this machine has not.
+    let elsewhere =
+        scratch.run(&["slurm", "--out=x", "--shards=1", "--time=9", "--scenario=simulator.toml"]);
+    let said = text(&elsewhere);
+    assert!(elsewhere.status.success() && said.contains("no run can be done on this machine"));
+    assert!(said.contains("/nowhere/simulator"), "{said}");
     // Whatever the folder is called.
     std::os::unix::fs::symlink("to", scratch.path("link")).unwrap();
     fs::create_dir(scratch.path("to")).unwrap();

@@ -219,12 +219,14 @@ impl AnyScenario {
         of_either!(self, scenario => shards::planned_shares(&**scenario, shards))
     }
 
-    /// That its runs can be shared out to shards: that their number does not follow from all of them.
+    /// That processes which have nothing but its file can share its runs out as shards. Returns why runs cannot be done on
+    /// this machine, if they cannot: another one may have the simulator.
     ///
     /// # Errors
-    /// A rule ends them.
-    pub fn check_shards(&self) -> Result<(), ScenarioError> {
-        of_either!(self, scenario => shards::check(&**scenario))
+    /// A rule ends the runs, so that their number follows from all of them; a law or a function is a program's own, which no file
+    /// holds; a model cannot be made.
+    pub fn check_shards(&self) -> Result<Option<ScenarioError>, ScenarioError> {
+        of_either!(self, scenario => shards::check_apart(&**scenario))
     }
 
     /// What all runs would take in one process, by the time of a few of them; without the time where trying one may cost

@@ -26,6 +26,19 @@ pub(crate) fn check<C: Subject>(scenario: &C) -> Result<(), ScenarioError> {
     Err(ScenarioError::field("until", problem))
 }
 
+/// That processes which have nothing but the file of a scenario can share its runs out. Returns why runs cannot be done on this
+/// machine, if they cannot: others may have the command of a simulator.
+pub(crate) fn check_apart<C: Subject>(
+    scenario: &C,
+) -> Result<Option<ScenarioError>, ScenarioError> {
+    check(scenario)?;
+    let models = scenario.prepare(None)?;
+    match scenario.begin(&models) {
+        Err(error) if scenario.function_name().is_none() => Ok(Some(error)),
+        other => other.map(|()| None),
+    }
+}
+
 /// How many runs a process is to do if none is there: those of a shard, or of all models.
 pub(crate) fn planned_runs<C: Subject>(scenario: &C, shard: Option<Shard>) -> u64 {
     let doing = shard.map_or(Doing::All, Doing::Shard);

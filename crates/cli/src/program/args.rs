@@ -375,7 +375,7 @@ pub(crate) struct SlurmArgs {
     #[arg(long, value_name = "T", default_value_t = 1, allow_negative_numbers = true, value_parser = value_parser!(u32).range(1..=1024))]
     pub(crate) threads: u32,
 
-    /// Number of shards, which is the size of the array [default: so that each takes about ten minutes]
+    /// Number of shards, which is the size of the array [default: so that each takes about ten minutes; with a simulator of your own it must be given]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value_parser!(u32).range(1..=1_000_000))]
     pub(crate) shards: Option<u32>,
 
@@ -391,7 +391,7 @@ pub(crate) struct SlurmArgs {
     #[arg(long, value_name = "NAME", value_parser = NonEmptyStringValueParser::new())]
     pub(crate) account: Option<String>,
 
-    /// Time limit of a task, and of the report, as of sbatch [default: five times the forecast, and ten minutes]
+    /// Time limit of a task, and of the report, as of sbatch [default: five times the forecast, and ten minutes; with a simulator of your own it must be given]
     #[arg(long, value_name = "TIME", value_parser = NonEmptyStringValueParser::new())]
     pub(crate) time: Option<String>,
 

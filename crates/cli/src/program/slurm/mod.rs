@@ -26,7 +26,14 @@ use shards::{LARGEST_ARRAY, choose};
 /// Runs the verb.
 pub(crate) fn slurm(arguments: &SlurmArgs) -> Result<(), Box<dyn Error>> {
     let scenario = stated(&arguments.scenario)?;
-    scenario.check_shards()?;
+    if let Some(file) = &arguments.scenario.file {
+        stays(file)?;
+    }
+    if let Some(problem) = scenario.check_shards()? {
+        say(&format!(
+            "warning: no run can be done on this machine, and on none that is like it: {problem}"
+        ));
+    }
     let script = script(arguments, &scenario)?.to_string();
     let Some(path) = file_of(arguments.output.as_deref()) else {
         return Ok(to_standard_output(&script)?);
@@ -52,9 +59,11 @@ fn script(arguments: &SlurmArgs, scenario: &AnyScenario) -> Result<Script, Box<d
             let forecast = scenario.forecast(&options)?;
             let time_of = |runs: u64| forecast.time_of(runs);
             let Some(total) = forecast.time() else {
-                return Err("--shards and --time: nobody but you knows how long a run of your simulator takes, so \
-                            that both must be given"
-                    .into());
+                return Err(
+                    "--shards and --time: nobody but you knows how long a run of your simulator takes, so that both must be \
+                     given, as --shards 20 --time 2:00:00"
+                        .into(),
+                );
             };
             let least = |shards| scenario.planned_shares(shards).into_iter().min().unwrap_or(0);
             let smallest = |shards| time_of(least(shards)).unwrap_or(total);
@@ -89,6 +98,8 @@ fn script(arguments: &SlurmArgs, scenario: &AnyScenario) -> Result<Script, Box<d
         Some(logs) => outside(logs, &arguments.out)?,
         None => beside(&out)?,
     };
+    is_folder("--out", &out)?;
+    is_folder("--logs", &logs)?;
     Ok(Script {
         name: scenario.name().to_owned(),
         models,
@@ -114,6 +125,33 @@ fn script(arguments: &SlurmArgs, scenario: &AnyScenario) -> Result<Script, Box<d
 /// A path that means the same in every folder, without a slash at its end.
 fn place(path: &Path) -> io::Result<PathBuf> {
     Ok(absolute(path)?.components().collect())
+}
+
+/// That a scenario can be read again by each task.
+fn stays(scenario: &Path) -> Result<(), String> {
+    // /dev/stdin can be a regular file, and in each task another one.
+    let is_of_process = absolute(scenario)
+        .is_ok_and(|path| ["/dev", "/proc"].iter().any(|own| path.starts_with(own)));
+    if !is_of_process && fs::metadata(scenario).is_ok_and(|there| there.is_file()) {
+        return Ok(());
+    }
+    Err(format!(
+        "--scenario {}: each task must read it again, and it is not a file that stays: write the scenario to one first",
+        scenario.display()
+    ))
+}
+
+/// That a place is or can become a folder, as far as is seen from this machine.
+fn is_folder(flag: &str, place: &Path) -> Result<(), String> {
+    let there = place.ancestors().find(|above| fs::symlink_metadata(above).is_ok());
+    match there {
+        Some(there) if !there.is_dir() => Err(format!(
+            "{flag} {}: {} is not a folder",
+            place.display(),
+            if there == place { "it".to_owned() } else { there.display().to_string() }
+        )),
+        _ => Ok(()),
+    }
 }
 
 /// The folder of the logs that was asked for, which is not in that of the study.

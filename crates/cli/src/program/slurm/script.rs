@@ -82,6 +82,12 @@ impl Script {
         text + &flag("out", &self.out) + &format!(" --threads={}", self.threads)
     }
 
+    /// The command that makes the report.
+    fn report(&self) -> String {
+        let [program, out] = [&self.program, &self.out].map(|path| quote(path.as_os_str()));
+        format!("{program} report -- {out}")
+    }
+
     /// What both jobs tell sbatch.
     fn submission(&self, time: &str) -> String {
         let mut text = "sbatch --parsable --requeue --open-mode=append".to_owned();
@@ -129,13 +135,21 @@ report() {{
     cat <<'END_OF_JOB'
 #!/bin/bash
 cd -- {folder} || exit 2
-exec {program} report -- {out}
+exec {report}
 END_OF_JOB
+}}
+
+# What is said if the report was not submitted: who submitted the array must know.
+no_report() {{
+    printf '%s: the report is not submitted. Once all tasks have ended, this makes it:\n  %s\n' "$1" {by_hand} >&2
+    exit 1
 }}
 
 array=$(shard | {shard_job} --array=1-{shards}{most} --output=%A_%a.log)
 array=${{array%%;*}}
-report=$(report | {report_job} --dependency=afterany:"$array" --output=%j-report.log)
+[[ $array =~ ^[0-9]+$ ]] || no_report "sbatch printed \"$array\" in the place of the number of the array job"
+report=$(report | {report_job} --dependency=afterany:"$array" --output=%j-report.log) ||
+    no_report "array job $array is submitted"
 printf 'array job %s, then report job %s; logs in %s\n' "$array" "${{report%%;*}}" "$logs"
 "#,
             name = quote(OsStr::new(&self.name)),
@@ -144,8 +158,8 @@ printf 'array job %s, then report job %s; logs in %s\n' "$array" "${{report%%;*}
             logs = quote(self.logs.as_os_str()),
             folder = quote(self.folder.as_os_str()),
             study = self.study(),
-            program = quote(self.program.as_os_str()),
-            out = quote(self.out.as_os_str()),
+            report = self.report(),
+            by_hand = quote(OsStr::new(&self.report())),
             shard_job = self.submission(&self.limits.shard),
             report_job = self.submission(&self.limits.report),
         )
