@@ -26,6 +26,9 @@ const MAX_THREADS: usize = 1024;
 /// What run i writes must depend on i alone, and on nothing that other runs do: take its random numbers from
 /// [`Streams`](crate::Streams). Then results are the same bits on any number of threads, and every run can
 /// be done again alone.
+///
+/// Runs are done on threads of rayon. One that computes with rayon itself must hold no lock meanwhile: its thread may begin other
+/// runs before it goes on. A [`SimulatorFunction`](crate::SimulatorFunction) is never called so.
 pub trait Simulation: Sync {
     /// What a thread keeps from some runs to the next, such as a batch; `()` if nothing.
     type Worker: Send;

@@ -131,33 +131,27 @@ impl Table {
         failure: Option<Failure>,
         cells: impl IntoIterator<Item = Cell<'c>>,
     ) -> Result<(), TableError> {
-        let (mut filled, mut refused) = (0, None);
         if self.first.checked_add(self.len as u64 + 1).is_none() {
             return Err(TableError::Runs { first: self.first });
         }
-        for cell in cells {
-            let Some(values) = self.values.get_mut(filled) else {
-                refused = Some(TableError::Cells { columns: self.values.len() });
-                break;
-            };
-            if !values.push(&cell)
-                || (matches!(cell, Cell::Null) && !self.columns[self.own + filled].is_optional())
-            {
-                let column = self.columns[self.own + filled].name().to_owned();
-                refused = Some(TableError::Cell { column, cell: format!("{cell:?}") });
-                break;
+        let columns = self.values.len();
+        let mut places = self.values.iter_mut().zip(&self.columns[self.own..]);
+        // Not in a loop, which copies each cell out of the iterator and waits for what was just written.
+        let filled = cells.into_iter().try_for_each(|cell| {
+            let (values, column) = places.next().ok_or(TableError::Cells { columns })?;
+            let may_be = column.is_optional() || !matches!(cell, Cell::Null);
+            if values.push(&cell) && may_be {
+                return Ok(());
             }
-            filled += 1;
+            let (column, cell) = (column.name().to_owned(), format!("{cell:?}"));
+            Err(TableError::Cell { column, cell })
+        });
+        let missing = filled.is_ok() && places.next().is_some();
+        let filled = if missing { Err(TableError::Cells { columns }) } else { filled };
+        if filled.is_err() {
+            self.values.iter_mut().for_each(|values| values.truncate(self.len));
         }
-        if refused.is_none() && filled < self.values.len() {
-            refused = Some(TableError::Cells { columns: self.values.len() });
-        }
-        if let Some(error) = refused {
-            for values in &mut self.values {
-                values.truncate(self.len);
-            }
-            return Err(error);
-        }
+        filled?;
         self.failures.extend(failure.map(|failure| (self.len, failure)));
         self.len += 1;
         Ok(())

@@ -1,7 +1,7 @@
 //! Runs of a simulator: what is drawn for a run is sent, what comes back are columns beside it.
 
 use rand::Rng;
-use std::{cell::RefCell, ops::Range};
+use std::{cell::RefCell, ops::Range, sync::Arc};
 
 use super::{
     child::Child,
@@ -122,8 +122,8 @@ pub struct ExternalSimulation<'a, I> {
     seeds: Streams,
     inputs: I,
     /// The columns of where the run belongs, of the inputs, and of the outputs.
-    places: Vec<Column>,
-    drawn: Vec<Column>,
+    places: Arc<[Column]>,
+    drawn: Arc<[Column]>,
     outputs: Vec<Column>,
 }
 
@@ -171,7 +171,7 @@ impl<'a, I: Inputs> ExternalSimulation<'a, I> {
         inputs: I,
         outputs: Vec<Column>,
     ) -> Self {
-        let (places, drawn) = (inputs.place_columns(), inputs.columns());
+        let (places, drawn) = (inputs.place_columns().into(), inputs.columns().into());
         let seeds = Streams::new(seed, model, "simulator seed");
         Self { simulator, model: model.to_owned(), seeds, inputs, places, drawn, outputs }
     }
@@ -263,7 +263,7 @@ impl<I: Inputs> Simulation for ExternalSimulation<'_, I> {
     type Worker = ();
 
     fn columns(&self) -> Vec<Column> {
-        self.places.iter().chain(&self.drawn).chain(&self.outputs).cloned().collect()
+        self.places.iter().chain(&*self.drawn).chain(&self.outputs).cloned().collect()
     }
 
     fn worker(&self) {}

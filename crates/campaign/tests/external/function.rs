@@ -1,8 +1,17 @@
 //! Functions in the place of a process: the same table, the same reasons.
 
-use gyradius_campaign::{Outputs, RunInputs, Simulator, SimulatorFunction};
+use gyradius_campaign::{Outputs, RunInputs, Simulator, SimulatorFunction, threads};
 use proptest::prelude::*;
-use std::collections::BTreeSet;
+use rayon::prelude::*;
+use std::{
+    cell::Cell,
+    collections::BTreeSet,
+    ops::Range,
+    sync::{
+        Arc,
+        atomic::{AtomicU32, Ordering},
+    },
+};
 
 use super::{assert_rows, simulation, simulator, table};
 
@@ -120,5 +129,49 @@ fn a_run_alone_is_told() {
         let answer: serde_json::Value = serde_json::from_str(&own.answer.unwrap()).unwrap();
         assert_eq!(answer["error"].is_string(), run == 3, "{answer}");
         assert_eq!(answer["outputs"]["y"].as_f64(), own.outputs.ok().map(|outputs| outputs[0]));
+    }
+}
+
+/// A function that computes in parallel is not called again by its own thread before it has returned, and no more calls are under
+/// way than there are threads.
+#[test]
+fn functions_that_compute_in_parallel_are_called_one_at_a_time() {
+    thread_local! { static DEPTH: Cell<u32> = const { Cell::new(0) } }
+    for number in [1, 2, 3] {
+        let (under_way, most) = (Arc::new(AtomicU32::new(0)), Arc::new(AtomicU32::new(0)));
+        let counted = Arc::clone(&most);
+        let parallel = move |inputs: &RunInputs<'_>| {
+            let depth = DEPTH.replace(DEPTH.get() + 1);
+            counted.fetch_max(under_way.fetch_add(1, Ordering::SeqCst) + 1, Ordering::SeqCst);
+            let (seed, pieces) = (inputs.seed(), 0..200_u64);
+            // A pool of its own, as of a library, and the one that it is called in.
+            let others = threads(Some(2)).unwrap();
+            let sum = |pieces: Range<u64>| -> u64 {
+                pieces
+                    .into_par_iter()
+                    .map(|i| (0..2000).fold(i ^ seed, |a, b| a.rotate_left(7) ^ b) & 1)
+                    .sum()
+            };
+            let sums = [others.install(|| sum(pieces.clone())), sum(pieces)];
+            under_way.fetch_sub(1, Ordering::SeqCst);
+            DEPTH.set(depth);
+            if depth > 0 || sums[0] != sums[1] {
+                return Err(format!("called again, {depth} deep"));
+            }
+            Ok(vec![("y".to_owned(), 1.0), ("seed".to_owned(), 2.0)])
+        };
+        let function = Simulator::function(SimulatorFunction::new(parallel));
+        let pool = threads(Some(number)).unwrap();
+        let table = gyradius_campaign::run(
+            &simulation(&function, BTreeSet::new(), 0),
+            "any",
+            300,
+            &pool,
+            &|_| {},
+        )
+        .unwrap();
+        assert_eq!(table.len(), 300);
+        assert_eq!(table.failures().count(), 0, "{:?}", table.failures().next());
+        assert!(most.load(Ordering::SeqCst) <= number as u32);
     }
 }
