@@ -4,7 +4,9 @@ use gyradius_statistics::StatisticsError;
 use rayon::prelude::*;
 use std::{
     ops::Range,
+    panic::resume_unwind,
     sync::atomic::{AtomicBool, AtomicU64, Ordering},
+    thread,
 };
 
 use crate::{
@@ -27,8 +29,7 @@ const MAX_THREADS: usize = 1024;
 /// [`Streams`](crate::Streams). Then results are the same bits on any number of threads, and every run can
 /// be done again alone.
 ///
-/// Runs are done on threads of rayon. One that computes with rayon itself must hold no lock meanwhile: its thread may begin other
-/// runs before it goes on. A [`SimulatorFunction`](crate::SimulatorFunction) is never called so.
+/// Runs are done on threads of rayon, unless they are to be done [apart](Self::apart).
 pub trait Simulation: Sync {
     /// What a thread keeps from some runs to the next, such as a batch; `()` if nothing.
     type Worker: Send;
@@ -43,6 +44,15 @@ pub trait Simulation: Sync {
     /// takes one: no thread is idle at the end then, and a campaign that is told to stop stops soon.
     fn together(&self) -> u64 {
         TOGETHER
+    }
+
+    /// Whether runs are done on threads that are not rayon's; not if nothing is said.
+    ///
+    /// A thread of rayon that waits for a loop of rayon does other work meanwhile, which here is another run, on the same stack
+    /// and in the middle of the first. Runs that compute with rayon themselves, hold a lock meanwhile or call what may do so, such as a function
+    /// of the user's own, are done apart.
+    fn apart(&self) -> bool {
+        false
     }
 
     /// Does these runs and pushes a row for each of them, in their order. A run that fails is a row too, with
@@ -100,23 +110,64 @@ pub(crate) fn run_range<S: Simulation>(
         }
         more(last - first)
     };
-    let number = (runs.end - runs.start).div_ceil(together);
-    let groups = (0..number).into_par_iter().map(|group| runs.start + group * together);
-    // Groups that a thread does one after the other share a worker and a table.
-    let begin = || Ok((simulation.worker(), None));
-    let parts = groups.fold(begin, |part, first| {
-        let (mut worker, rows) = part?;
-        let mut rows = rows.unwrap_or_else(|| empty.from_run(first));
-        do_some(&mut worker, first, &mut rows)?;
-        Ok((worker, Some(rows)))
-    });
-    let parts: Vec<Option<Table>> =
-        parts.map(|part| part.map(|(_, rows)| rows)).collect::<Result<_, CampaignError>>()?;
-    let joined = parts.into_iter().flatten().reduce(|mut whole, part| {
+    let parts = if simulation.apart() {
+        // Threads take what is left one after the other: waking one costs as much as some short runs.
+        let next = AtomicU64::new(runs.start);
+        let take = || {
+            next.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |first| {
+                (first < runs.end).then(|| first.saturating_add(together))
+            })
+        };
+        let take_all = || {
+            let (mut worker, mut parts) = (simulation.worker(), Vec::<Table>::new());
+            while let Ok(first) = take() {
+                let follows = |part: &Table| part.first() + part.len() as u64 == first;
+                if !parts.last().is_some_and(follows) {
+                    parts.push(empty.from_run(first));
+                }
+                if let Some(part) = parts.last_mut() {
+                    do_some(&mut worker, first, part)?;
+                }
+            }
+            Ok(parts)
+        };
+        let threads = (0..rayon::current_num_threads()).into_par_iter().with_max_len(1);
+        let parts = threads.map(|_| {
+            let is_done = next.load(Ordering::Relaxed) >= runs.end;
+            if is_done { Ok(Vec::new()) } else { aside(take_all)? }
+        });
+        let parts = parts.collect::<Result<Vec<_>, CampaignError>>()?;
+        let mut parts: Vec<Table> = parts.into_iter().flatten().collect();
+        parts.sort_by_key(Table::first);
+        parts
+    } else {
+        let number = (runs.end - runs.start).div_ceil(together);
+        let groups = (0..number).into_par_iter().map(|group| runs.start + group * together);
+        // Groups that a thread does one after the other share a worker and a table.
+        let begin = || Ok((simulation.worker(), None));
+        let parts = groups.fold(begin, |part, first| {
+            let (mut worker, rows) = part?;
+            let mut rows = rows.unwrap_or_else(|| empty.from_run(first));
+            do_some(&mut worker, first, &mut rows)?;
+            Ok((worker, Some(rows)))
+        });
+        let parts = parts.map(|part| part.map(|(_, rows)| rows));
+        parts.collect::<Result<Vec<_>, CampaignError>>()?.into_iter().flatten().collect()
+    };
+    let joined = parts.into_iter().reduce(|mut whole, part| {
         whole.append(part);
         whole
     });
     Ok(joined.unwrap_or_else(|| empty.from_run(runs.start)))
+}
+
+/// Does some work in a thread that is none of rayon's, and waits for it without doing anything else.
+fn aside<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, CampaignError> {
+    thread::scope(|scope| {
+        let begun = thread::Builder::new().spawn_scoped(scope, work);
+        let begun = begun.map_err(|e| CampaignError::Threads { problem: e.to_string() })?;
+        Ok(begun.join().unwrap_or_else(|panic| resume_unwind(panic)))
+    })
 }
 
 /// Whether it goes on, or was told to stop.

@@ -536,3 +536,28 @@ def test_studies_in_threads(tmp_path: Path) -> None:
     for thread in together:
         thread.join()
     assert sorted(found) == [0, 1, 2, 3]
+
+
+@pytest.mark.parametrize("threads", [None, 1, 2])
+def test_functions_that_draw_are_called_one_at_a_time(threads: int | None) -> None:
+    depth = threading.local()
+    attitudes = gyradius.uniform_attitude()
+    under_way: list[int] = []
+
+    def simulate(inputs: dict[str, float], run: int, seed: int) -> dict[str, float]:
+        inside = getattr(depth, "calls", 0)
+        depth.calls = inside + 1
+        under_way.append(run)
+        # More rows than one core fills at a time.
+        drawn = attitudes.rvs(2_000, rng=seed)
+        gyradius.is_realizable(np.broadcast_to(np.eye(3), (2_000, 3, 3)))
+        most = len(under_way)
+        under_way.remove(run)
+        depth.calls = inside
+        return {"y": inputs["x"], "inside": float(inside), "most": float(most), "drawn": float(drawn.sum())}
+
+    outputs = {"y": "m", "inside": "1", "most": "1", "drawn": "1"}
+    # Deep enough to leave the stack if each run began another.
+    table = gyradius.study(scenario(), simulate, outputs=outputs, runs=700, threads=threads).to_numpy()["all"]
+    assert (table["y"] == table["x"]).all() and (table["inside"] == 0.0).all()
+    assert table["most"].max() <= (threads or 1)

@@ -1,7 +1,6 @@
 //! What a simulator is given for a run.
 
 use serde::{Serialize, Serializer};
-use std::sync::Arc;
 
 use crate::column::Column;
 
@@ -19,17 +18,7 @@ pub struct RunInputs<'a> {
 
 /// Numbers by the names of their columns.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Named<'a, T>(pub(super) &'a Arc<[Column]>, pub(super) &'a [Option<T>]);
-
-/// The same for another thread.
-#[derive(Clone, Debug)]
-pub(super) struct OwnedInputs {
-    run: u64,
-    place: (Arc<[Column]>, Vec<Option<i64>>),
-    model: String,
-    seed: u64,
-    inputs: (Arc<[Column]>, Vec<Option<f64>>),
-}
+pub(super) struct Named<'a, T>(pub(super) &'a [Column], pub(super) &'a [Option<T>]);
 
 impl<'a> RunInputs<'a> {
     /// The number of the run, from 0.
@@ -68,32 +57,7 @@ impl<'a> RunInputs<'a> {
     }
 }
 
-impl RunInputs<'_> {
-    pub(super) fn owned(&self) -> OwnedInputs {
-        let Self { run, place, model, seed, inputs } = *self;
-        OwnedInputs {
-            run,
-            place: place.owned(),
-            model: model.to_owned(),
-            seed,
-            inputs: inputs.owned(),
-        }
-    }
-}
-
-impl OwnedInputs {
-    pub(super) fn borrowed(&self) -> RunInputs<'_> {
-        let Self { run, place, model, seed, inputs } = self;
-        let (place, inputs) = (Named(&place.0, &place.1), Named(&inputs.0, &inputs.1));
-        RunInputs { run: *run, place, model, seed: *seed, inputs }
-    }
-}
-
 impl<'a, T: Copy> Named<'a, T> {
-    fn owned(self) -> (Arc<[Column]>, Vec<Option<T>>) {
-        (Arc::clone(self.0), self.1.to_vec())
-    }
-
     fn present(self) -> impl Iterator<Item = (&'a str, T)> {
         let named = self.0.iter().zip(self.1);
         named.filter_map(|(column, number)| Some((column.name(), (*number)?)))

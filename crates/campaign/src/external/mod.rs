@@ -1,7 +1,6 @@
 //! A simulator of the user's own, a command in any language or a function, as a simulation.
 
 mod answer;
-mod beside;
 #[cfg(unix)]
 mod child;
 #[cfg(not(unix))]

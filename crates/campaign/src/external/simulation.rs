@@ -1,7 +1,7 @@
 //! Runs of a simulator: what is drawn for a run is sent, what comes back are columns beside it.
 
 use rand::Rng;
-use std::{cell::RefCell, ops::Range, sync::Arc};
+use std::{cell::RefCell, ops::Range};
 
 use super::{
     child::Child,
@@ -122,8 +122,8 @@ pub struct ExternalSimulation<'a, I> {
     seeds: Streams,
     inputs: I,
     /// The columns of where the run belongs, of the inputs, and of the outputs.
-    places: Arc<[Column]>,
-    drawn: Arc<[Column]>,
+    places: Vec<Column>,
+    drawn: Vec<Column>,
     outputs: Vec<Column>,
 }
 
@@ -171,7 +171,7 @@ impl<'a, I: Inputs> ExternalSimulation<'a, I> {
         inputs: I,
         outputs: Vec<Column>,
     ) -> Self {
-        let (places, drawn) = (inputs.place_columns().into(), inputs.columns().into());
+        let (places, drawn) = (inputs.place_columns(), inputs.columns());
         let seeds = Streams::new(seed, model, "simulator seed");
         Self { simulator, model: model.to_owned(), seeds, inputs, places, drawn, outputs }
     }
@@ -263,13 +263,18 @@ impl<I: Inputs> Simulation for ExternalSimulation<'_, I> {
     type Worker = ();
 
     fn columns(&self) -> Vec<Column> {
-        self.places.iter().chain(&*self.drawn).chain(&self.outputs).cloned().collect()
+        self.places.iter().chain(&self.drawn).chain(&self.outputs).cloned().collect()
     }
 
     fn worker(&self) {}
 
     fn together(&self) -> u64 {
         1
+    }
+
+    /// A function may compute in parallel.
+    fn apart(&self) -> bool {
+        self.simulator.is_function()
     }
 
     fn run(&self, runs: Range<u64>, (): &mut (), rows: &mut Table) -> Result<(), TableError> {

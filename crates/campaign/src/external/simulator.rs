@@ -77,6 +77,11 @@ impl Simulator {
         }
     }
 
+    /// Whether it is a function.
+    pub(super) fn is_function(&self) -> bool {
+        matches!(self.0, Way::Function(_))
+    }
+
     /// What its processes wrote to standard output that nobody had asked for, if they did.
     #[must_use]
     pub fn unasked(&self) -> Option<Unasked> {

@@ -2,13 +2,15 @@
 
 use super::symmetric::{Matrix6, Six, with_eigenvalues};
 
-/// Steps of the search.
-const STEPS: usize = 400;
-/// Deviations smaller than this share of the largest weigh no more than it.
-const FLOOR: f64 = 0.1;
+/// Steps of the search, at most, and the share of the whole that the last of them moves.
+const STEPS: usize = 1500;
+const STILL: f64 = 1e-6;
+/// Deviations smaller than this share of the largest weigh no more than it: a small one, or one that is stated to be none, is no
+/// reason to miss the largest.
+pub(super) const FLOOR: f64 = 0.25;
 
 /// The positive semidefinite C of six coordinates that minimises Σₑ ((lₑᵀ C lₑ − σₑ²)/sₑ²)², where lₑ are the rows of
-/// `map` and sₑ is σₑ or a tenth of the largest: projected gradient steps with momentum (Nesterov).
+/// `map` and sₑ is σₑ or a quarter of the largest: projected gradient steps with momentum (Nesterov).
 pub(super) fn nearest_covariance(map: &Matrix6, deviations: &[f64; 6]) -> Matrix6 {
     let largest = deviations.iter().copied().fold(0.0, f64::max);
     if !(largest > 0.0) {
@@ -30,6 +32,9 @@ pub(super) fn nearest_covariance(map: &Matrix6, deviations: &[f64; 6]) -> Matrix
         }
         before = found;
         found = with_eigenvalues(&(ahead - gradient / curvature), |x| x.max(0.0));
+        if (found - before).amax() <= STILL * found.amax() {
+            break;
+        }
     }
     found
 }

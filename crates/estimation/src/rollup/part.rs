@@ -14,7 +14,7 @@ use std::borrow::Cow;
 
 use super::finding::{PartFinding, products};
 use super::first_order::{FirstOrder, TEN_UNITS};
-use super::second_moment_law::SecondMomentLaw;
+use super::second_moment_law::{SecondMomentLaw, missed};
 use super::symmetric::{Matrix6, Six, congruence, mapped};
 
 /// How far below zero a second moment may lie, in traces of the inertia: files carry about six digits.
@@ -25,8 +25,8 @@ const MOST: [f64; 3] = [1e30, 1e15, 1e60];
 const LEAST_MASS: f64 = 1e-30;
 /// Largest deviation of a mass, in masses.
 const MOST_MASS_DEVIATION: f64 = 10.0;
-/// Deviations that differ by no more than this share of what is stated, or of a tenth of the largest, are the same.
-const SAME: f64 = 0.01;
+/// An entry that moves by less than this share of the one that moves most is fixed: its correlations mean nothing.
+const FIXED: f64 = 0.01;
 /// A correlation of entries stated as independent that is worth a word.
 const APART: f64 = 0.2;
 
@@ -235,19 +235,20 @@ fn body_of(
 /// What the law of the inertia has not of what is stated.
 fn judge(findings: &mut Vec<PartFinding>, law: &SecondMomentLaw, stated: &[f64; 6]) {
     findings.extend(products(law.mean().as_inertia_matrix(), stated));
-    let found: [f64; 6] = std::array::from_fn(|e| law.covariance()[(e, e)].max(0.0).sqrt());
-    let largest = stated.iter().copied().fold(0.0, f64::max);
-    let moved: Vec<(&'static str, f64, f64)> = (0..6)
-        .filter(|e| (found[*e] - stated[*e]).abs() > SAME * stated[*e].max(0.1 * largest))
-        .map(|e| (InertiaMatrix::ENTRY_NAMES[e], stated[e], found[e]))
+    let moved: Vec<(&'static str, f64, f64)> = missed(law.covariance(), stated)
+        .map(|(e, found)| (InertiaMatrix::ENTRY_NAMES[e], stated[e], found))
         .collect();
     if !moved.is_empty() {
-        if law.rank() < 3 {
+        if !law.is_possible() {
             findings.push(PartFinding::Flat { dimensions: law.rank() });
         }
         findings.push(PartFinding::Moved { entries: moved });
     }
-    let pairs = (0..6).flat_map(|e| (0..e).map(move |f| (f, e)));
+    let found: [f64; 6] = std::array::from_fn(|e| law.covariance()[(e, e)].max(0.0).sqrt());
+    // What hardly moves has nothing to be correlated with.
+    let least = FIXED * found.iter().copied().fold(0.0, f64::max);
+    let moves = |e: &usize| found[*e] > least;
+    let pairs = (0..6).filter(moves).flat_map(|e| (0..e).filter(moves).map(move |f| (f, e)));
     let correlation = |(e, f): (usize, usize)| law.covariance()[(e, f)] / (found[e] * found[f]);
     let strongest = pairs
         .map(|pair| (pair, correlation(pair)))

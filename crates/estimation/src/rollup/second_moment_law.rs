@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use rand::Rng;
 use rand_distr::Distribution;
 
-use super::free_correlations::nearest_covariance;
+use super::free_correlations::{FLOOR, nearest_covariance};
 use super::nearest_law::NearestLaw;
 use super::scaled_correlations::ScaledCorrelations;
 use super::symmetric::{
@@ -15,6 +15,13 @@ use super::symmetric::{
 
 /// Second moments below this share of the largest are none.
 const NONE: f64 = 1e-9;
+
+/// What relative difference of a deviation is told of, where those below this share of the largest count as that.
+const SAME: f64 = 0.01;
+const LEAST: f64 = 0.1;
+
+/// Deviations that no covariance has come no nearer than this share of the largest.
+const NEAR: f64 = 0.05;
 
 /// How much the square of a correlation weighs beside that of a relative difference of a deviation: independence is mostly
 /// nobody's statement, deviations are.
@@ -30,6 +37,8 @@ pub(super) struct SecondMomentLaw {
     draws: Draws,
     /// How many second moments are not zero: 3, 2 of a plate, 1 of a rod, 0 of a point.
     rank: usize,
+    /// Whether a covariance of matrices of this rank has the stated deviations.
+    possible: bool,
     covariance: Matrix6,
 }
 
@@ -58,8 +67,15 @@ impl SecondMomentLaw {
         sorted.sort_by(|a, b| b.0.total_cmp(&a.0));
         let largest = sorted[0].0;
         let rank = sorted.iter().filter(|(k, _)| *k > NONE * largest && *k > 0.0).count();
-        let fixed = Self { mean: *mean, draws: Draws::Fixed, rank, covariance: Matrix6::zeros() };
-        if rank == 0 || covariance.amax() == 0.0 {
+        let is_fixed = covariance.amax() == 0.0;
+        let fixed = Self {
+            mean: *mean,
+            draws: Draws::Fixed,
+            rank,
+            possible: rank > 0 || is_fixed,
+            covariance: Matrix6::zeros(),
+        };
+        if rank == 0 || is_fixed {
             return Some(fixed);
         }
         let (mut out, mut back) = (Matrix3::zeros(), Matrix3::zeros());
@@ -75,7 +91,9 @@ impl SecondMomentLaw {
         };
         if rank < 3 {
             let deviations = std::array::from_fn(|e| covariance[(e, e)].sqrt());
-            return NearestLaw::new(&nearest_covariance(&entries, &deviations)).map(relative);
+            let nearest = nearest_covariance(&entries, &deviations);
+            let possible = has(&mapped(&entries, &nearest), &deviations);
+            return NearestLaw::new(&nearest).map(|law| Self { possible, ..relative(law) });
         }
         let absolute = mapped(&second_moments_of_inertia(), covariance);
         let stated = mapped(&congruence(&back), &absolute);
@@ -103,7 +121,7 @@ impl SecondMomentLaw {
     /// of the correlations.
     fn off(&self, stated: &Matrix6, deviations: &[f64; 6]) -> f64 {
         let largest = deviations.iter().copied().fold(0.0, f64::max);
-        let size = |e: usize| deviations[e].max(0.1 * largest);
+        let size = |e: usize| deviations[e].max(FLOOR * largest);
         let square = |e: usize| {
             let gap = self.covariance[(e, e)].max(0.0).sqrt() - deviations[e];
             (gap / size(e)).powi(2)
@@ -121,6 +139,11 @@ impl SecondMomentLaw {
 
     pub(super) fn rank(&self) -> usize {
         self.rank
+    }
+
+    /// Whether any law of such bodies can have the stated deviations, as far as their covariance tells.
+    pub(super) fn is_possible(&self) -> bool {
+        self.possible
     }
 
     /// Covariance of the entries that the law has.
@@ -148,6 +171,27 @@ impl Distribution<Inertia> for SecondMomentLaw {
             }
         }
     }
+}
+
+/// Whether a covariance has the stated deviations, as nearly as a search finds them.
+fn has(covariance: &Matrix6, stated: &[f64; 6]) -> bool {
+    let largest = stated.iter().copied().fold(0.0, f64::max);
+    let gap = |e: usize| (covariance[(e, e)].max(0.0).sqrt() - stated[e]).abs();
+    (0..6).all(|e| gap(e) <= NEAR * largest)
+}
+
+/// The entries whose deviations are not those stated, each with the deviation that it has.
+pub(super) fn missed(
+    covariance: &Matrix6,
+    stated: &[f64; 6],
+) -> impl Iterator<Item = (usize, f64)> {
+    let largest = stated.iter().copied().fold(0.0, f64::max);
+    let found = std::array::from_fn::<f64, 6, _>(|e| covariance[(e, e)].max(0.0).sqrt());
+    let stated = *stated;
+    let is_missed = move |(e, found): &(usize, f64)| {
+        (found - stated[*e]).abs() > SAME * stated[*e].max(LEAST * largest)
+    };
+    found.into_iter().enumerate().filter(is_missed)
 }
 
 /// The covariance of Σ with moments of inertia of the same deviations that are not independent, but correlated so that no
