@@ -42,6 +42,11 @@ pub enum CompilerDoubt {
         /// The first of them, as it is called in the file.
         body: String,
     },
+    /// It gives bodies of an MJCF file other frames, or merges them with their parents.
+    Framed {
+        /// The attribute.
+        told: String,
+    },
     /// An MJCF file has `coordinate="global"`. MuJoCo no longer loads such a file, and took places and axes for those of the
     /// world before.
     Global,
@@ -67,6 +72,11 @@ impl fmt::Display for CompilerDoubt {
             Self::Unplaced { body } => write!(
                 f,
                 "the <inertial> of \"{body}\" has no pos, which MuJoCo demands: it does not load the file as it is"
+            ),
+            Self::Framed { told } => write!(
+                f,
+                "the file has {told}: MuJoCo gives bodies other frames or merges them with their parents. Copies of the file are right, but \
+                 numbers in the frames of the file must not be set on its bodies as they are"
             ),
             Self::Global => f.write_str(
                 "the file has coordinate=\"global\", which MuJoCo no longer loads: its places and axes are read here as those of \
@@ -100,7 +110,8 @@ pub(crate) fn doubts(tree: &Tree<'_>, format: Format, gaps: &[Gap]) -> Vec<Compi
                 CompilerDoubt::Unplaced { body: shortened(body) }
             });
             let global = said(tree, "coordinate").filter(|(_, told)| *told == "global");
-            let all = raised.chain(replicated).chain(unplaced);
+            let framed = framed(tree).map(|told| CompilerDoubt::Framed { told });
+            let all = raised.chain(replicated).chain(unplaced).chain(framed);
             let all = all.chain(global.map(|_| CompilerDoubt::Global));
             all.chain(includes.then_some(CompilerDoubt::Included)).collect()
         }
@@ -110,6 +121,23 @@ pub(crate) fn doubts(tree: &Tree<'_>, format: Format, gaps: &[Gap]) -> Vec<Compi
         }
         Format::Sdf | Format::Csv | Format::Toml | Format::Json => Vec::new(),
     }
+}
+
+/// What gives bodies other frames: free joints that are aligned, each by itself or all of them, and static bodies that are
+/// merged with their parents.
+fn framed(tree: &Tree<'_>) -> Option<String> {
+    let joints = tree
+        .all("joint")
+        .filter(|node| node.attribute("type").is_some_and(|kind| kind.trim() == "free"));
+    let free = tree.all("freejoint").chain(joints);
+    let aligns: Vec<_> = free.map(|node| node.attribute("align").map(str::trim)).collect();
+    if aligns.contains(&Some("true")) {
+        return Some(written(("align", "true")));
+    }
+    let is_true = |told: &Said<'_>| told.1 == "true";
+    let aligned = said(tree, "alignfree").filter(is_true);
+    let aligned = aligned.filter(|_| aligns.iter().any(|align| *align != Some("false")));
+    aligned.or_else(|| said(tree, "fusestatic").filter(is_true)).map(written)
 }
 
 /// An attribute of the compiler and its value.

@@ -795,6 +795,8 @@ fn what_mujoco_may_change_is_told() {
     let mjcf = |more: &str| {
         format!("<mujoco>{more}<worldbody><body name='b'>{inertial}</body></worldbody></mujoco>")
     };
+    let free =
+        |compiler: &str, joint: &str| mjcf(compiler).replace("<geom", &format!("{joint}<geom"));
     let urdf = |compiler: &str| {
         format!(
             "<robot name='r'><mujoco><compiler {compiler}/></mujoco><link name='b'><inertial><mass value='1'/><inertia \
@@ -832,6 +834,14 @@ fn what_mujoco_may_change_is_told() {
             &[],
         ),
         ("r.xml", mjcf("<compiler coordinate='global'/>"), &["coordinate=\"global\""]),
+        ("r.xml", mjcf("<compiler fusestatic='true'/>"), &["fusestatic=\"true\""]),
+        ("r.xml", mjcf("<compiler fusestatic='false' alignfree='true'/>"), &[]),
+        ("r.xml", free("<compiler alignfree='true'/>", "<freejoint/>"), &["alignfree=\"true\""]),
+        ("r.xml", free("<compiler alignfree='true'/>", "<joint type='free'/>"), &["alignfree"]),
+        ("r.xml", free("<compiler alignfree='true'/>", "<joint/>"), &[]),
+        ("r.xml", free("<compiler alignfree='true'/>", "<freejoint align='false'/>"), &[]),
+        ("r.xml", free("", "<freejoint align='true'/>"), &["align=\"true\""]),
+        ("r.xml", free("", "<joint type='free' align='auto'/>"), &[]),
         ("r.urdf", urdf("fusestatic='true'"), &[]),
         ("r.urdf", urdf("settotalmass='5' boundmass='2'"), &["settotalmass=\"5\"", "boundmass"]),
         ("r.urdf", urdf("inertiafromgeom='true'"), &["inertiafromgeom=\"true\""]),

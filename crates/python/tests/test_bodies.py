@@ -198,6 +198,11 @@ def test_regions() -> None:
             gyradius.box(**bad)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="points"):
         gyradius.hull(np.zeros(3))
+    for turn in ([[0, 0, 0, 1], [1, 0, 0, 0]], [[0, 0, 0, 1]], [0, 0, 1], np.zeros((0, 4)), 1.0):
+        with pytest.raises(ValueError, match="attitude: its shape is"):
+            gyradius.box(sides=1, attitude=turn)
+        with pytest.raises(ValueError, match="attitude: its shape is"):
+            gyradius.ellipsoid(semi_axes=1, attitude=turn)
 
 
 def test_rods_have_no_negative_moments_in_simulators() -> None:

@@ -318,6 +318,19 @@ def laws_of_bodies() -> dict[str, MassPropertiesLaw]:
     }
 
 
+def test_a_nominal_mass_goes_with_what_follows_it() -> None:
+    def joint(**given: float) -> MassPropertiesLaw:
+        lengths = [normal(0.12, 0.006), normal(0.03, 0.0015), normal(0.02, 0.001)]
+        return MassPropertiesLaw.joint(
+            normal(2.4, 0.1), [0.0, 0.0, 0.0], roots=lengths, axes=gyradius.uniform_attitude(), **given
+        )
+
+    joint(follows=0.5, nominal_mass=2.4)
+    for given in ({"nominal_mass": 2.4}, {"nominal_mass": -7.0}, {"follows": 0.5}):
+        with pytest.raises(ValueError, match="nominal_mass"):
+            joint(**given)
+
+
 @pytest.mark.parametrize("name", list(laws_of_bodies()))
 def test_laws_of_bodies_have_their_moments(name: str) -> None:
     law = laws_of_bodies()[name]

@@ -416,8 +416,14 @@ def test_refusals_are_value_errors(wrong: Any, message: str) -> None:
 @pytest.mark.parametrize("name", ["runs", "vehicles", "seed", "look_every", "drivers", "threads"])
 @pytest.mark.parametrize("wrong", [-1, 2.5, math.nan, "many", 2**64, 1j])
 def test_numbers_that_are_none_are_named(name: str, wrong: Any) -> None:
+    until: dict[str, Any] = {"until": "mean(y) within 0.1"} if name == "look_every" else {}
     with pytest.raises(ValueError, match=name):
-        gyradius.study(scenario(), double, **{name: wrong})
+        gyradius.study(scenario(), double, **until, **{name: wrong})
+
+
+def test_looks_need_a_rule_that_ends_the_runs() -> None:
+    with pytest.raises(ValueError, match="look_every = 10: it goes with until"):
+        gyradius.study(scenario(), double, look_every=10)
 
 
 def test_a_million_may_be_written_as_a_float() -> None:

@@ -397,7 +397,12 @@ def _three(name: str, value: ArrayLike) -> NDArray[np.float64]:
 
 
 def _turn(attitude: ArrayLike | None) -> dict[str, Any]:
-    return {} if attitude is None else {"attitude": attitudes("attitude", attitude, "xyzw")[0][0].tolist()}
+    if attitude is None:
+        return {}
+    turn = numbers("attitude", attitude)
+    if turn.shape != (4,):
+        raise ValueError(f"attitude: its shape is {turn.shape}, and it must be (4,)")
+    return {"attitude": attitudes("attitude", turn, "xyzw")[0][0].tolist()}
 
 
 def load(path: str | os.PathLike[str], *, strict: bool = False) -> dict[str, MassProperties]:

@@ -103,6 +103,8 @@ class MassPropertiesLaw(LawOfBodies):
             laws = [scalar(f"{name}[{i}]", law) for i, law in enumerate(three(name, given_laws))]
             of = {name.replace("_", "-"): {"laws": laws, "axes": axes.form}}
         tensor: dict[str, Any] = {"of": of}
+        if follows is None and nominal_mass is not None:
+            raise ValueError(f"nominal_mass = {nominal_mass!r}: it goes with follows, which is not given")
         if follows is not None:
             if nominal_mass is None:
                 raise ValueError("nominal_mass: follows needs it")

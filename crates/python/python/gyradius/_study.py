@@ -353,6 +353,8 @@ def study(
     for flag, value in (("force", force), ("retry_failed", retry_failed), ("even_if_full", even_if_full)):
         if not isinstance(value, (bool, np.bool_)):
             raise ValueError(f"{flag} = {value!r}: it must be True or False")
+    if look_every is not None and until is None:
+        raise ValueError(f"look_every = {look_every!r}: it goes with until, which is not given")
     if columns is not None and (isinstance(columns, str) or not all(isinstance(one, str) for one in columns)):
         raise ValueError(f"columns = {columns!r}: it must be a list of names")
     given = None if outputs is None else [{"name": name, "unit": unit} for name, unit in _mapping("outputs", outputs)]
