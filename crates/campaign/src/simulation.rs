@@ -49,8 +49,8 @@ pub trait Simulation: Sync {
     /// Whether runs are done on threads that are not rayon's; not if nothing is said.
     ///
     /// A thread of rayon that waits for a loop of rayon does other work meanwhile, which here is another run, on the same stack
-    /// and in the middle of the first. Runs that compute with rayon themselves, hold a lock meanwhile or call what may do so, such as a function
-    /// of the user's own, are done apart.
+    /// and in the middle of the first. So runs are done apart if they compute with rayon and hold a lock meanwhile, or call a function
+    /// of the user's own, which may do so.
     fn apart(&self) -> bool {
         false
     }
@@ -126,7 +126,9 @@ pub(crate) fn run_range<S: Simulation>(
                     parts.push(empty.from_run(first));
                 }
                 if let Some(part) = parts.last_mut() {
-                    do_some(&mut worker, first, part)?;
+                    // What others would still do counts for nothing then.
+                    let end = |_: &CampaignError| next.store(runs.end, Ordering::Relaxed);
+                    do_some(&mut worker, first, part).inspect_err(end)?;
                 }
             }
             Ok(parts)

@@ -138,7 +138,7 @@ fn bad_flags_are_refused() {
     for value in ["1e16", "18446744073709551616"] {
         let message = shell.refused(&["draw", "-n", "1", "--first", value]);
         assert!(message.contains("from 0 to 18446744073709551615"), "{message}");
-        assert!(message.contains("above 9007199254740992 it must be written with"), "{message}");
+        assert!(message.contains("from 9007199254740992 on it must be written with"), "{message}");
     }
     let message = shell.refused(&["study", "--max-failed", "-1"]);
     assert!(message.contains("'-1' for '--max-failed <SHARE>': it must lie between"), "{message}");

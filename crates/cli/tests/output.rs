@@ -234,7 +234,20 @@ fn whole_numbers_have_many_forms() {
         assert!(forms.iter().all(|form| seed(form) == first), "{forms:?}");
         assert!(first.contains(&format!("seed = {}", forms[0])), "{first}");
     }
-    for bad in ["1.5", "1e-3", "1e300", "inf", "nan", "1__0", "_1", "1_", "", "1e16", "-1e6"] {
+    for bad in [
+        "1.5",
+        "1e-3",
+        "1e300",
+        "inf",
+        "nan",
+        "1__0",
+        "_1",
+        "1_",
+        "",
+        "9.007199254740993e15",
+        "1e16",
+        "-1e6",
+    ] {
         for option in ["--runs", "--seed"] {
             let output = shell.run(&["study", &format!("{option}={bad}")]);
             assert_eq!(output.status.code(), Some(2), "{option} {bad}");

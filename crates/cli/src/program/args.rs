@@ -779,7 +779,7 @@ fn whole(text: &str) -> Result<u64, String> {
     digits.parse().ok().or_else(float).filter(|_| grouped).ok_or_else(|| {
         let (most, certain) = (u64::MAX, 1_u64 << 53);
         format!(
-            "it must be a whole number from 0 to {most}, as 1000000, 1_000_000 or 1e6; above {certain} it must be written \
+            "it must be a whole number from 0 to {most}, as 1000000, 1_000_000 or 1e6; from {certain} on it must be written \
              with all its digits"
         )
     })

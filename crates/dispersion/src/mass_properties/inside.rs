@@ -91,7 +91,7 @@ fn about(body: &MassProperties) -> TenSums {
 /// Next to no trial draw is possible in the region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "region: only {possible} of {trials} trial draws were bodies that fit into it, and at least one in a thousand must be: each draw \
+    "region: {possible} of {trials} trial draws were bodies that fit into it, and at least one in a thousand must be: each draw \
      is tried again until it fits, which would take too long"
 )]
 pub struct RegionAcceptanceError {

@@ -20,7 +20,7 @@ const NONE: f64 = 1e-9;
 const SAME: f64 = 0.01;
 const LEAST: f64 = 0.1;
 
-/// Deviations that no covariance has come no nearer than this share of the largest.
+/// If no covariance comes nearer to the stated deviations than this share of the largest, none has them.
 const NEAR: f64 = 0.05;
 
 /// How much the square of a correlation weighs beside that of a relative difference of a deviation: independence is mostly

@@ -201,7 +201,9 @@ pub(crate) fn whole<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u64, D
         type Value = u64;
 
         fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-            f.write_str("a whole number that is not negative")
+            f.write_str(
+                "a whole number that is not negative, from 9007199254740992 on with all its digits",
+            )
         }
 
         fn visit_i64<E: de::Error>(self, value: i64) -> Result<u64, E> {
@@ -230,7 +232,8 @@ pub(crate) fn some_whole<'de, D: Deserializer<'de>>(
 /// that its last digits are not certain.
 #[must_use]
 pub fn whole_number(value: f64) -> Option<u64> {
-    let certain = (0.0..=2f64.powi(53)).contains(&value) && value.fract() == 0.0;
+    // 2⁵³ is what 2⁵³ + 1 is read as, too.
+    let certain = (0.0..2f64.powi(53)).contains(&value) && value.fract() == 0.0;
     certain.then_some(value as u64)
 }
 
