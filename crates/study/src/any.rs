@@ -226,7 +226,7 @@ impl AnyScenario {
     /// A rule ends the runs, so that their number follows from all of them; a law or a function is a program's own, which no file
     /// holds; a model cannot be made.
     pub fn check_shards(&self) -> Result<Option<ScenarioError>, ScenarioError> {
-        of_either!(self, scenario => shards::check_apart(&**scenario))
+        of_either!(self, scenario => shards::check_alone(&**scenario))
     }
 
     /// What all runs would take in one process, by the time of a few of them; without the time where trying one may cost

@@ -28,7 +28,7 @@ pub(crate) fn check<C: Subject>(scenario: &C) -> Result<(), ScenarioError> {
 
 /// That processes which have nothing but the file of a scenario can share its runs out. Returns why runs cannot be done on this
 /// machine, if they cannot: others may have the command of a simulator.
-pub(crate) fn check_apart<C: Subject>(
+pub(crate) fn check_alone<C: Subject>(
     scenario: &C,
 ) -> Result<Option<ScenarioError>, ScenarioError> {
     check(scenario)?;

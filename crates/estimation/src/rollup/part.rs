@@ -14,7 +14,7 @@ use std::borrow::Cow;
 
 use super::finding::{PartFinding, products};
 use super::first_order::{FirstOrder, TEN_UNITS};
-use super::second_moment_law::{SecondMomentLaw, missed};
+use super::second_moment_law::{SecondMomentLaw, deviations_of, missed};
 use super::symmetric::{Matrix6, Six, congruence, mapped};
 
 /// How far below zero a second moment may lie, in traces of the inertia: files carry about six digits.
@@ -244,7 +244,7 @@ fn judge(findings: &mut Vec<PartFinding>, law: &SecondMomentLaw, stated: &[f64; 
         }
         findings.push(PartFinding::Moved { entries: moved });
     }
-    let found: [f64; 6] = std::array::from_fn(|e| law.covariance()[(e, e)].max(0.0).sqrt());
+    let found = deviations_of(law.covariance());
     // What hardly moves has nothing to be correlated with.
     let least = FIXED * found.iter().copied().fold(0.0, f64::max);
     let moves = |e: &usize| found[*e] > least;

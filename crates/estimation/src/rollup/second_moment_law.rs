@@ -90,7 +90,7 @@ impl SecondMomentLaw {
             Self { draws, covariance: mapped(&entries, &covariance), ..fixed.clone() }
         };
         if rank < 3 {
-            let deviations = std::array::from_fn(|e| covariance[(e, e)].sqrt());
+            let deviations = deviations_of(covariance);
             let nearest = nearest_covariance(&entries, &deviations);
             let possible = has(&mapped(&entries, &nearest), &deviations);
             return NearestLaw::new(&nearest).map(|law| Self { possible, ..relative(law) });
@@ -101,7 +101,7 @@ impl SecondMomentLaw {
             return Some(relative(law));
         }
         let nominal = six(&mean.as_inertia_matrix().second_moment_matrix());
-        let deviations: [f64; 6] = std::array::from_fn(|e| covariance[(e, e)].sqrt());
+        let deviations = deviations_of(covariance);
         let scaled = |absolute: &Matrix6| {
             let law = ScaledCorrelations::new(&nominal, absolute)?;
             let covariance = mapped(&inertia_of_second_moments(), &law.covariance());
@@ -122,10 +122,8 @@ impl SecondMomentLaw {
     fn off(&self, stated: &Matrix6, deviations: &[f64; 6]) -> f64 {
         let largest = deviations.iter().copied().fold(0.0, f64::max);
         let size = |e: usize| deviations[e].max(FLOOR * largest);
-        let square = |e: usize| {
-            let gap = self.covariance[(e, e)].max(0.0).sqrt() - deviations[e];
-            (gap / size(e)).powi(2)
-        };
+        let found = deviations_of(&self.covariance);
+        let square = |e: usize| ((found[e] - deviations[e]) / size(e)).powi(2);
         let pair = |e: usize, f: usize| {
             let gap = self.covariance[(e, f)] - stated[(e, f)];
             CORRELATION * (gap / (size(e) * size(f))).powi(2)
@@ -173,11 +171,15 @@ impl Distribution<Inertia> for SecondMomentLaw {
     }
 }
 
+/// The deviations of a covariance, of which rounding may have made a variance negative.
+pub(super) fn deviations_of(covariance: &Matrix6) -> [f64; 6] {
+    std::array::from_fn(|e| covariance[(e, e)].max(0.0).sqrt())
+}
+
 /// Whether a covariance has the stated deviations, as nearly as a search finds them.
 fn has(covariance: &Matrix6, stated: &[f64; 6]) -> bool {
     let largest = stated.iter().copied().fold(0.0, f64::max);
-    let gap = |e: usize| (covariance[(e, e)].max(0.0).sqrt() - stated[e]).abs();
-    (0..6).all(|e| gap(e) <= NEAR * largest)
+    deviations_of(covariance).iter().zip(stated).all(|(it, is)| (it - is).abs() <= NEAR * largest)
 }
 
 /// The entries whose deviations are not those stated, each with the deviation that it has.
@@ -186,7 +188,7 @@ pub(super) fn missed(
     stated: &[f64; 6],
 ) -> impl Iterator<Item = (usize, f64)> {
     let largest = stated.iter().copied().fold(0.0, f64::max);
-    let found = std::array::from_fn::<f64, 6, _>(|e| covariance[(e, e)].max(0.0).sqrt());
+    let found = deviations_of(covariance);
     let stated = *stated;
     let is_missed = move |(e, found): &(usize, f64)| {
         (found - stated[*e]).abs() > SAME * stated[*e].max(LEAST * largest)

@@ -31,7 +31,7 @@ pub(crate) fn slurm(arguments: &SlurmArgs) -> Result<(), Box<dyn Error>> {
     }
     if let Some(problem) = scenario.check_shards()? {
         say(&format!(
-            "warning: no run can be done on this machine, and on none that is like it: {problem}"
+            "warning: no run can be done on this machine, nor on any that is like it: {problem}"
         ));
     }
     let script = script(arguments, &scenario)?.to_string();
