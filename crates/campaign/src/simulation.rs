@@ -101,66 +101,95 @@ pub(crate) fn run_range<S: Simulation>(
     runs: Range<u64>,
     more: &(dyn Fn(u64) -> Result<(), CampaignError> + Sync),
 ) -> Result<Table, CampaignError> {
-    let together = simulation.together().max(1);
-    let do_some = |worker: &mut S::Worker, first: u64, rows: &mut Table| {
-        let (last, before) = (first.saturating_add(together).min(runs.end), rows.len());
-        simulation.run(first..last, worker, rows)?;
-        if (rows.len() - before) as u64 != last - first {
-            return Err(CampaignError::Rows { runs: first..last, rows: rows.len() - before });
-        }
-        more(last - first)
-    };
-    let parts = if simulation.apart() {
-        // Threads take what is left one after the other: waking one costs as much as some short runs.
-        let next = AtomicU64::new(runs.start);
-        let take = || {
-            next.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |first| {
-                (first < runs.end).then(|| first.saturating_add(together))
-            })
-        };
-        let take_all = || {
-            let (mut worker, mut parts) = (simulation.worker(), Vec::<Table>::new());
-            while let Ok(first) = take() {
-                let follows = |part: &Table| part.first() + part.len() as u64 == first;
-                if !parts.last().is_some_and(follows) {
-                    parts.push(empty.from_run(first));
-                }
-                if let Some(part) = parts.last_mut() {
-                    // What others would still do counts for nothing then.
-                    let end = |_: &CampaignError| next.store(runs.end, Ordering::Relaxed);
-                    do_some(&mut worker, first, part).inspect_err(end)?;
-                }
-            }
-            Ok(parts)
-        };
-        let threads = (0..rayon::current_num_threads()).into_par_iter().with_max_len(1);
-        let parts = threads.map(|_| {
-            let is_done = next.load(Ordering::Relaxed) >= runs.end;
-            if is_done { Ok(Vec::new()) } else { aside(take_all)? }
-        });
-        let parts = parts.collect::<Result<Vec<_>, CampaignError>>()?;
-        let mut parts: Vec<Table> = parts.into_iter().flatten().collect();
-        parts.sort_by_key(Table::first);
-        parts
-    } else {
-        let number = (runs.end - runs.start).div_ceil(together);
-        let groups = (0..number).into_par_iter().map(|group| runs.start + group * together);
-        // Groups that a thread does one after the other share a worker and a table.
-        let begin = || Ok((simulation.worker(), None));
-        let parts = groups.fold(begin, |part, first| {
-            let (mut worker, rows) = part?;
-            let mut rows = rows.unwrap_or_else(|| empty.from_run(first));
-            do_some(&mut worker, first, &mut rows)?;
-            Ok((worker, Some(rows)))
-        });
-        let parts = parts.map(|part| part.map(|(_, rows)| rows));
-        parts.collect::<Result<Vec<_>, CampaignError>>()?.into_iter().flatten().collect()
-    };
+    let asked = Asked { simulation, empty, together: simulation.together().max(1), runs, more };
+    let parts = if simulation.apart() { asked.in_threads_apart()? } else { asked.in_groups()? };
     let joined = parts.into_iter().reduce(|mut whole, part| {
         whole.append(part);
         whole
     });
-    Ok(joined.unwrap_or_else(|| empty.from_run(runs.start)))
+    Ok(joined.unwrap_or_else(|| empty.from_run(asked.runs.start)))
+}
+
+/// Runs that were asked for, of which each thread does groups.
+struct Asked<'a, S> {
+    simulation: &'a S,
+    empty: &'a Table,
+    /// How many runs a group has; the last one may have fewer.
+    together: u64,
+    runs: Range<u64>,
+    /// Is told of each group that is done, and may end it all.
+    more: &'a (dyn Fn(u64) -> Result<(), CampaignError> + Sync),
+}
+
+impl<S: Simulation> Asked<'_, S> {
+    /// The groups are rayon's to share out. Those that a thread does one after the other have one worker and
+    /// one table.
+    fn in_groups(&self) -> Result<Vec<Table>, CampaignError> {
+        let number = (self.runs.end - self.runs.start).div_ceil(self.together);
+        let groups =
+            (0..number).into_par_iter().map(|group| self.runs.start + group * self.together);
+        let begin = || Ok((self.simulation.worker(), None));
+        let parts = groups.fold(begin, |part, first| {
+            let (mut worker, rows) = part?;
+            let mut rows = rows.unwrap_or_else(|| self.empty.from_run(first));
+            self.do_group(first, &mut worker, &mut rows)?;
+            Ok((worker, Some(rows)))
+        });
+        let parts = parts.map(|part| part.map(|(_, rows)| rows));
+        Ok(parts.collect::<Result<Vec<_>, CampaignError>>()?.into_iter().flatten().collect())
+    }
+
+    /// Each thread of rayon's waits for one of ours, which takes the groups that are left one after the other:
+    /// waking a thread for each group costs as much as some short runs.
+    fn in_threads_apart(&self) -> Result<Vec<Table>, CampaignError> {
+        let next = AtomicU64::new(self.runs.start);
+        let threads = (0..rayon::current_num_threads()).into_par_iter().with_max_len(1);
+        let parts = threads.map(|_| {
+            let is_done = next.load(Ordering::Relaxed) >= self.runs.end;
+            if is_done { Ok(Vec::new()) } else { aside(|| self.take_groups(&next))? }
+        });
+        let parts = parts.collect::<Result<Vec<_>, CampaignError>>()?;
+        let mut parts: Vec<Table> = parts.into_iter().flatten().collect();
+        parts.sort_by_key(Table::first);
+        Ok(parts)
+    }
+
+    /// Takes groups until none is left. Those that follow each other are in one table.
+    fn take_groups(&self, next: &AtomicU64) -> Result<Vec<Table>, CampaignError> {
+        let take = || {
+            next.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |first| {
+                (first < self.runs.end).then(|| first.saturating_add(self.together))
+            })
+        };
+        let (mut worker, mut parts) = (self.simulation.worker(), Vec::<Table>::new());
+        while let Ok(first) = take() {
+            let follows = |part: &Table| part.first() + part.len() as u64 == first;
+            if !parts.last().is_some_and(follows) {
+                parts.push(self.empty.from_run(first));
+            }
+            if let Some(part) = parts.last_mut() {
+                // What others would still do counts for nothing then.
+                let end = |_: &CampaignError| next.store(self.runs.end, Ordering::Relaxed);
+                self.do_group(first, &mut worker, part).inspect_err(end)?;
+            }
+        }
+        Ok(parts)
+    }
+
+    /// Does the group that begins with this run, and writes its rows.
+    fn do_group(
+        &self,
+        first: u64,
+        worker: &mut S::Worker,
+        rows: &mut Table,
+    ) -> Result<(), CampaignError> {
+        let (last, before) = (first.saturating_add(self.together).min(self.runs.end), rows.len());
+        self.simulation.run(first..last, worker, rows)?;
+        if (rows.len() - before) as u64 != last - first {
+            return Err(CampaignError::Rows { runs: first..last, rows: rows.len() - before });
+        }
+        (self.more)(last - first)
+    }
 }
 
 /// Does some work in a thread that is none of rayon's, and waits for it without doing anything else.
