@@ -113,15 +113,21 @@ impl Runs {
         look: impl Fn(&Table) + Sync,
     ) -> Result<(), RunsError> {
         self.blocks.par_iter().filter(|block| which(block.range())).try_for_each(|block| {
-            if is_stopped(self.stop.as_deref()) {
-                return Err(RunsError::Stopped);
-            }
+            self.go_on()?;
             match block {
                 Block::Held(table) => look(table),
                 Block::Stored { path, .. } => look(&self.read(path)?),
             }
             Ok(())
         })
+    }
+
+    /// Whether it goes on, or they are [stopped](Self::stopped_by).
+    ///
+    /// # Errors
+    /// They are.
+    pub fn go_on(&self) -> Result<(), RunsError> {
+        if is_stopped(self.stop.as_deref()) { Err(RunsError::Stopped) } else { Ok(()) }
     }
 
     /// Looks at every block that has some of these runs, one after the other, in their order.
@@ -138,9 +144,7 @@ impl Runs {
             runs.start < some.end && some.start < runs.end
         };
         for block in self.blocks.iter().filter(has) {
-            if is_stopped(self.stop.as_deref()) {
-                return Err(RunsError::Stopped);
-            }
+            self.go_on()?;
             match block {
                 Block::Held(table) => look(table),
                 Block::Stored { path, .. } => look(&self.read(path)?),

@@ -112,7 +112,9 @@ impl Subject for Scenario {
         let seen = looks.into_iter().zip(runs).map(|(look, runs)| look.finish(runs));
         let seen: Vec<Seen> = seen.collect::<Result<_, _>>()?;
         let columns = runs.first().map_or(&[][..], Runs::columns);
-        let mut summary = Summary::new(self, models, &seen, columns, Section::new(self)?)?;
+        let go_on = || Ok(runs.iter().try_for_each(Runs::go_on)?);
+        let compared = Section::new(self, &go_on)?;
+        let mut summary = Summary::new(self, models, &seen, columns, compared)?;
         summary.claims = claims::judge(self, &summary, &seen);
         summary.figures = figures_of_study::of_study(self, &summary, &seen);
         Ok(summary)

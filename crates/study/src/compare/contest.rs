@@ -15,7 +15,7 @@ use super::{
     options::Size,
     reference::{Candidate, Target},
 };
-use crate::{failure::RunFailure, scenario::Scenario};
+use crate::{StudyError, failure::RunFailure, scenario::Scenario};
 
 /// How a model did, or why there is none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,6 +26,9 @@ pub(crate) struct Cell {
     pub(crate) problem: Option<String>,
     pub(crate) results: Option<Results>,
 }
+
+/// Refuses once somebody wants an end: a separation of some scenarios takes a second.
+pub(crate) type GoOn<'a> = &'a (dyn Fn() -> Result<(), StudyError> + Sync);
 
 /// What the draws of a model are like.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -61,7 +64,8 @@ impl Cell {
         scenario: &Scenario,
         streams: &Streams,
         size: Size,
-    ) -> Result<Self, StatisticsError> {
+        go_on: GoOn<'_>,
+    ) -> Result<Self, StudyError> {
         let mut cell = Self {
             model: kind,
             realizable_by_construction: kind.is_realizable_by_construction(),
@@ -78,8 +82,8 @@ impl Cell {
                     .collect();
                 let separated: Vec<Result<Option<f64>, RunFailure>> = (0..size.separations)
                     .into_par_iter()
-                    .map(|run| nutation(draw(run), scenario))
-                    .collect();
+                    .map(|run| go_on().map(|()| nutation(draw(run), scenario)))
+                    .collect::<Result<_, StudyError>>()?;
                 let entries = || drawn.iter().map(|d| d.entries).collect::<Vec<_>>();
                 let fit = match moments {
                     Some(moments) => Some(Fit::known(&moments, target.moments())),

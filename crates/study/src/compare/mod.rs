@@ -19,7 +19,6 @@ mod text;
 use gyradius_campaign::{Contents, Folder, Progress, Streams, threads};
 use gyradius_dispersion::ModelKind;
 use gyradius_report::{Document, file_of};
-use gyradius_statistics::StatisticsError;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::{
@@ -35,7 +34,7 @@ pub(crate) use section::{EVERY_MODEL, Section};
 
 use crate::{StudyError, scenario::Scenario};
 use body::NominalBody;
-use contest::{Cell, measures, nutation};
+use contest::{Cell, GoOn, measures, nutation};
 use measure::Measure;
 use options::{Plan, Size};
 use reference::Target;
@@ -192,7 +191,7 @@ impl Settings {
 }
 
 /// Everything at once: the cells are independent of each other.
-fn bodies(plan: &Plan, progress: Progress<'_>) -> Result<Vec<BodyResult>, StatisticsError> {
+fn bodies(plan: &Plan, progress: Progress<'_>) -> Result<Vec<BodyResult>, StudyError> {
     let done = AtomicU64::new(0);
     plan.bodies
         .par_iter()
@@ -208,7 +207,7 @@ fn bodies(plan: &Plan, progress: Progress<'_>) -> Result<Vec<BodyResult>, Statis
                     &plan.models,
                     &plan.scenario,
                     plan.size,
-                    &|| progress(done.fetch_add(1, Ordering::Relaxed) + 1),
+                    (&|| progress(done.fetch_add(1, Ordering::Relaxed) + 1), &|| Ok(())),
                 )
             });
             Ok(BodyResult::new(body, &plan.scenario, levels.collect::<Result<_, _>>()?))
@@ -224,8 +223,8 @@ fn level(
     models: &[ModelKind],
     scenario: &Scenario,
     size: Size,
-    done: &(dyn Fn() + Sync),
-) -> Result<LevelResult, StatisticsError> {
+    (done, go_on): (&(dyn Fn() + Sync), GoOn<'_>),
+) -> Result<LevelResult, StudyError> {
     let target = match target.and_then(Target::uncertain) {
         Ok(target) => target,
         Err(problem) => {
@@ -234,11 +233,11 @@ fn level(
             return Ok(LevelResult { level_percent, reference: None, problem, models: Vec::new() });
         }
     };
-    let cells: Result<Vec<Cell>, StatisticsError> = models
+    let cells: Result<Vec<Cell>, StudyError> = models
         .par_iter()
         .map(|kind| {
             let streams = Streams::new(size.seed, kind.name(), &format!("compare {label}"));
-            let cell = Cell::new(*kind, &target, scenario, &streams, size);
+            let cell = Cell::new(*kind, &target, scenario, &streams, size, go_on);
             done();
             cell
         })

@@ -5,20 +5,23 @@ use gyradius_report::{
     self as page, Figure, Label, PageCell, PageTable, Picture, RangeGrid, RangePanel, Text,
     with_unit,
 };
-use gyradius_statistics::StatisticsError;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 use super::{
     BodyResult, LevelResult,
     body::NominalBody,
+    contest::GoOn,
     level,
     measure::Measure,
     options::Size,
     reference::Target,
     text::{Block, is_poor, kinds, matched, remarks},
 };
-use crate::scenario::{Axes, Scenario, UncertainBody};
+use crate::{
+    StudyError,
+    scenario::{Axes, Scenario, UncertainBody},
+};
 
 /// Name of the figure of all models of inertia.
 pub(crate) const EVERY_MODEL: &str = "figure-models";
@@ -37,7 +40,7 @@ pub(crate) struct Section {
 }
 
 impl Section {
-    pub(crate) fn new(scenario: &Scenario) -> Result<Self, StatisticsError> {
+    pub(crate) fn new(scenario: &Scenario, go_on: GoOn<'_>) -> Result<Self, StudyError> {
         let size = Size { draws: DRAWS, separations: SEPARATIONS, seed: scenario.seed() };
         let of = |name: &str, body: &UncertainBody, size| {
             let law = body.law(Axes::WholeSphere).map_err(|e| e.to_string());
@@ -51,12 +54,10 @@ impl Section {
                 })
             });
             let label = format!("study {name}");
-            let levels = level(None, &label, target, &ModelKind::ALL, scenario, size, &|| {})?;
-            Ok(BodyResult::new(
-                &NominalBody::of_study(name, *body.nominal()),
-                scenario,
-                vec![levels],
-            ))
+            let all = &ModelKind::ALL;
+            let levels = level(None, &label, target, all, scenario, size, (&|| {}, go_on))?;
+            let nominal = NominalBody::of_study(name, *body.nominal());
+            Ok::<_, StudyError>(BodyResult::new(&nominal, scenario, vec![levels]))
         };
         let payload = of("payload", scenario.payload(), size)?;
         // The spin is the payload's.

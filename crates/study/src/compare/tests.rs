@@ -1,6 +1,7 @@
 //! Tests of the comparison of models.
 
 use super::*;
+use gyradius_campaign::CampaignError;
 use nalgebra::Matrix3;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -305,7 +306,7 @@ fn bodies_that_are_known_exactly_have_words_and_no_numbers() {
             "{head}[stage.dispersion]{still}\n{after}[[models]]\nname = \"own\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n"
         );
         let scenario = Scenario::from_toml(&text).unwrap_or_else(|e| panic!("{e}\n{text}"));
-        let every = Section::new(&scenario).unwrap();
+        let every = Section::new(&scenario, &|| Ok(())).unwrap();
         assert_eq!(every.figure().is_none(), payload_too);
         let page =
             every.section().map(|section| Document::new("", "", "").section(section).markdown());
@@ -319,4 +320,19 @@ fn bodies_that_are_known_exactly_have_words_and_no_numbers() {
         assert_eq!(rows.len(), ModelKind::ALL.len());
         assert!(rows.iter().all(|row| row[2] == "–" && row[7] == "– |"), "{page}");
     }
+}
+
+/// Whoever wants an end does not wait for the separations that are left, which can take a second each.
+#[test]
+fn an_end_comes_between_two_separations() {
+    let scenario = Scenario::peck_2003().unwrap();
+    let asked = AtomicU64::new(0);
+    let go_on = || match asked.fetch_add(1, Ordering::Relaxed) {
+        0..=6 => Ok(()),
+        _ => Err(CampaignError::Stopped.into()),
+    };
+    let pool = threads(Some(1)).unwrap();
+    let error = pool.install(|| Section::new(&scenario, &go_on)).unwrap_err();
+    assert!(matches!(error, StudyError::Campaign(CampaignError::Stopped)), "{error}");
+    assert!((8..8 + ModelKind::ALL.len() as u64).contains(&asked.into_inner()));
 }
