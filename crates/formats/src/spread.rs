@@ -31,6 +31,12 @@ pub(crate) fn is_marked(heading: &str) -> bool {
     MARKS.iter().any(|mark| plain.contains(mark))
 }
 
+/// Whether it has the mark as it is typed: `mass +/-`.
+pub(crate) fn has_typed_mark(heading: &str) -> bool {
+    let plain: String = heading.chars().filter(|c| !c.is_whitespace()).collect();
+    plain.contains("+/-") || plain.contains("+-")
+}
+
 /// Whether it has a word for it.
 pub(crate) fn has_word(heading: &str) -> bool {
     words(&heading.to_lowercase()).any(|word| WORDS.contains(&word))

@@ -4,6 +4,9 @@ use std::fmt;
 
 use crate::{FileBodyError, FileProblem, UnitError, body::shortened, error::Refusal};
 
+/// How many headings a message names.
+const NAMED: usize = 6;
+
 /// Which of the two tables of a list of parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PartsFile {
@@ -20,12 +23,27 @@ pub struct PartsError {
     line: Option<usize>,
     name: Option<String>,
     problem: PartsProblem,
+    /// Headings that mean nothing here, one of which may be meant for what is missing.
+    passed_over: Vec<String>,
 }
 
 impl PartsError {
     pub(super) fn new(line: usize, name: Option<&str>, problem: PartsProblem) -> Self {
         let name = name.map(str::to_owned);
-        Self { file: PartsFile::Parts, line: Some(line), name, problem }
+        let passed_over = Vec::new();
+        Self { file: PartsFile::Parts, line: Some(line), name, problem, passed_over }
+    }
+
+    /// With the headings that mean nothing here, if something is missing.
+    pub(super) fn beside(self, passed_over: &[String]) -> Self {
+        let passed_over = match self.problem {
+            PartsProblem::Number(FileBodyError::Missing { .. })
+            | PartsProblem::NoInertia
+            | PartsProblem::NoColumn { .. }
+            | PartsProblem::Shape { .. } => passed_over.to_vec(),
+            _ => Vec::new(),
+        };
+        Self { passed_over, ..self }
     }
 
     pub(super) fn in_edges(self) -> Self {
@@ -53,7 +71,13 @@ impl PartsError {
 
 impl From<Refusal> for PartsError {
     fn from(Refusal { line, problem }: Refusal) -> Self {
-        Self { file: PartsFile::Parts, line, name: None, problem: PartsProblem::File(problem) }
+        Self {
+            file: PartsFile::Parts,
+            line,
+            name: None,
+            problem: PartsProblem::File(problem),
+            passed_over: Vec::new(),
+        }
     }
 }
 
@@ -65,7 +89,20 @@ impl fmt::Display for PartsError {
         if let Some(name) = &self.name {
             write!(f, "{}: ", shortened(name))?;
         }
-        write!(f, "{}", self.problem)
+        write!(f, "{}", self.problem)?;
+        match self.passed_over.as_slice() {
+            [] => Ok(()),
+            [one] => write!(f, "; nothing is read from the column {one:?}"),
+            some => {
+                let named: Vec<String> =
+                    some.iter().take(NAMED).map(|heading| format!("{heading:?}")).collect();
+                write!(f, "; nothing is read from the columns {}", named.join(", "))?;
+                match some.len().saturating_sub(NAMED) {
+                    0 => Ok(()),
+                    more => write!(f, " and {more} more"),
+                }
+            }
+        }
     }
 }
 

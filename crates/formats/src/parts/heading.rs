@@ -1,5 +1,7 @@
 //! What the columns of a list of parts hold.
 
+use gyradius_inertia::Shape;
+
 use crate::{
     body::entry_of,
     heading_sign::without_sign,
@@ -73,8 +75,10 @@ pub(crate) enum Scale {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Heading {
     Column(Column),
-    /// Perhaps a size of a shape, by its name.
-    Size(String),
+    /// A size of a shape, by its name, and its unit in SI, if one is stated.
+    Size(&'static str, Option<f64>),
+    /// A size of a shape, by its name, and what follows and is no unit that is read.
+    SizeUnit(&'static str, BadUnit),
     /// A number of the ten or a standard deviation, as messages call it, and what follows and is no unit that is read.
     Unit(&'static str, BadUnit),
     /// It looks like a product of inertia, and its name does not tell its sign.
@@ -127,6 +131,7 @@ impl Heading {
     pub(crate) fn says_the_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Column(one), Self::Column(other)) => one.stated() == other.stated(),
+            (Self::Size(one, _), Self::Size(other, _)) => one == other,
             _ => self == other,
         }
     }
@@ -134,18 +139,31 @@ impl Heading {
     /// The first of the ten among some columns in a unit that is not of SI, if this one is a number of its kind that
     /// states no unit: nobody knows then whether it is in that unit or in SI.
     pub(crate) fn unit_it_lacks(&self, beside: &[Self]) -> Option<usize> {
-        let Self::Column(mut column) = *self else { return None };
-        let (dimension, None) = column.unit()? else { return None };
-        beside.iter().position(|other| {
-            matches!(*other, Self::Column(Column::Value(i, Some(si)))
-                if si != 1.0 && Group(i, 1).dimension() == dimension)
+        let dimension = match *self {
+            Self::Column(mut column) => {
+                let (dimension, None) = column.unit()? else { return None };
+                dimension
+            }
+            Self::Size(_, None) => Dimension::Length,
+            _ => return None,
+        };
+        beside.iter().position(|other| match *other {
+            Self::Column(Column::Value(i, Some(si))) => {
+                si != 1.0 && Group(i, 1).dimension() == dimension
+            }
+            Self::Size(_, Some(si)) => si != 1.0 && dimension == Dimension::Length,
+            _ => false,
         })
     }
 
     /// Why the unit of a column is not read, if it is a number's. Beside a column of the number, its name with other
     /// words is another column.
     pub(crate) fn bad_unit(&self, beside: &[Self]) -> Option<(&'static str, &BadUnit)> {
-        let Self::Unit(field, bad) = self else { return None };
+        let (field, bad) = match self {
+            Self::Unit(field, bad) => (field, bad),
+            Self::SizeUnit(field, bad) => return Some((field, bad)),
+            _ => return None,
+        };
         let is_held = beside.iter().any(
             |other| matches!(other, Self::Column(Column::Value(i, _)) if VALUES[*i] == *field),
         );
@@ -168,21 +186,29 @@ impl Heading {
             return Self::Other;
         }
         if let Some(found) = without_sign(text).and_then(|plain| quantity(&plain)) {
-            return if matches!(found, Self::Column(_)) { Self::Signed } else { found };
+            return match found {
+                Self::Column(_) if spread::has_typed_mark(text) => Self::NoDeviation,
+                Self::Column(_) => Self::Signed,
+                other => other,
+            };
         }
         if let Some(found) = word(&squeezed(text)).map(Self::Column).or_else(|| quantity(text)) {
             return found;
         }
-        let name = text.trim().to_lowercase();
         if spread::is_marked(text) || is_spread(text) {
             Self::NoDeviation
         } else if is_unread_product(text) {
             Self::Product
-        } else if name.ends_with("_m") && name.chars().all(|c| c.is_ascii_alphabetic() || c == '_')
-        {
-            Self::Size(name)
         } else {
-            Self::Other
+            size(text).unwrap_or(Self::Other)
+        }
+    }
+
+    /// What it means in a table without shapes.
+    pub(crate) fn without_shapes(self) -> Self {
+        match self {
+            Self::Size(..) | Self::SizeUnit(..) => Self::Other,
+            other => other,
         }
     }
 }
@@ -229,6 +255,18 @@ fn word(plain: &str) -> Option<Column> {
         "attitudez" | "qz" => Some(Column::Attitude(2)),
         "attitudew" | "qw" => Some(Column::Attitude(3)),
         _ => None,
+    }
+}
+
+/// A size of a shape: `radius_mm`, `Height [in]`.
+fn size(text: &str) -> Option<Heading> {
+    let name = |size: &'static str| size.strip_suffix("_m").unwrap_or(size);
+    let known =
+        |plain: &str| Shape::SIZES.iter().copied().find(|size| squeezed(name(size)) == plain);
+    let (size, tail) = longest_name(text, known)?;
+    match tail.unit(Dimension::Length)? {
+        Ok(unit) => Some(Heading::Size(size, (!unit.text.is_empty()).then_some(unit.si))),
+        Err(bad) => bad.is_certain.then_some(Heading::SizeUnit(size, bad)),
     }
 }
 
@@ -298,6 +336,7 @@ mod tests {
     fn headings_are_known_in_every_spelling() {
         let value = |i, si| Heading::Column(Column::Value(i, si));
         let sigma = |i, n, si| Heading::Column(Column::Deviation(Group(i, n), Scale::Unit(si)));
+        let size = |name, si| Heading::Size(name, si);
         let percent = |i, n| Heading::Column(Column::Deviation(Group(i, n), Scale::Percent));
         for (text, expected) in [
             ("mass", value(0, None)),
@@ -315,16 +354,24 @@ mod tests {
             ("moments_percent", percent(4, 3)),
             ("mass (%)", percent(0, 1)),
             ("sigma_products_kg_m2", sigma(7, 3, Some(1.0))),
-            ("radius_m", Heading::Size("radius_m".to_owned())),
+            ("radius_m", size("radius_m", Some(1.0))),
+            ("Radius [in]", size("radius_m", Some(0.0254))),
+            ("inner radius", size("inner_radius_m", None)),
+            ("Height above deck", Heading::Other),
+            ("heights", Heading::Other),
             ("sigma_mess", Heading::NoDeviation),
             ("mass_std", Heading::NoDeviation),
             ("Mass (1σ)", Heading::NoDeviation),
+            ("mass +/-", Heading::NoDeviation),
+            ("Ixx (+/-) [kg m2]", Heading::NoDeviation),
+            ("-Ixy", Heading::Signed),
+            ("-sigma_Ixy", Heading::Signed),
             ("Ixx uncertainty [kg m2]", Heading::NoDeviation),
             ("tolerance class", Heading::Other),
             ("function", Heading::Other),
             ("Mass [Mg]", value(0, Some(1000.0))),
             ("supplier", Heading::Other),
-            ("centre_m", Heading::Size("centre_m".to_owned())),
+            ("centre_m", Heading::Other),
             ("POIconv", Heading::Column(Column::Products)),
             ("Ipoint", Heading::Column(Column::Point)),
         ] {

@@ -118,7 +118,11 @@ impl PartsTable {
         };
         let line = line_of(&text, &first);
         let headings: Vec<String> = first.iter().map(|field| cell(&text, field)).collect();
-        let columns: Vec<Heading> = headings.iter().map(|heading| Heading::of(heading)).collect();
+        let columns = headings.iter().map(|heading| Heading::of(heading));
+        let mut columns: Vec<Heading> = columns.collect();
+        if !columns.contains(&Heading::Column(Column::Shape)) {
+            columns = columns.into_iter().map(Heading::without_shapes).collect();
+        }
         let mut passed_over = Vec::new();
         for (at, (column, heading)) in columns.iter().zip(&headings).enumerate() {
             let refuse = |problem: PartsProblem| Err(PartsError::new(line, None, problem));
@@ -141,10 +145,10 @@ impl PartsTable {
                 Heading::NoDeviation => {
                     return refuse(PartsProblem::Deviation { heading: shortened(heading) });
                 }
-                Heading::Unit(..) | Heading::Product | Heading::Other => {
+                Heading::Unit(..) | Heading::SizeUnit(..) | Heading::Product | Heading::Other => {
                     passed_over.push(shortened(heading))
                 }
-                Heading::Column(_) | Heading::Size(_) => {
+                Heading::Column(_) | Heading::Size(..) => {
                     if let Some(first) = columns[..at].iter().position(|c| c.says_the_same(column))
                     {
                         let (first, second) = (shortened(&headings[first]), shortened(heading));
@@ -157,7 +161,8 @@ impl PartsTable {
         let has_mass = columns.iter().any(|c| matches!(c, Heading::Column(Column::Value(0, _))));
         for (there, column) in [(has(Column::Name), "name"), (has_mass, "mass")] {
             if !there {
-                return Err(PartsError::new(line, None, PartsProblem::NoColumn { column }));
+                let error = PartsError::new(line, None, PartsProblem::NoColumn { column });
+                return Err(error.beside(&passed_over));
             }
         }
         let has_parents = has(Column::Parent);
@@ -171,7 +176,8 @@ impl PartsTable {
                 );
             }
             let cells: Vec<String> = fields.iter().map(|field| cell(&text, field)).collect();
-            found.push(Cells { columns: &columns, cells: &cells, products }.row(line)?);
+            let row = Cells { columns: &columns, cells: &cells, products }.row(line);
+            found.push(row.map_err(|error| error.beside(&passed_over))?);
         }
         Ok(Raw { rows: found, passed_over, has_parents })
     }

@@ -158,9 +158,10 @@ impl Cells<'_> {
                 | Column::Attitude(_)
                 | Column::Follows,
             )
-            | Heading::Size(_) => Some(()),
+            | Heading::Size(..) => Some(()),
             Heading::Column(Column::Name | Column::Parent | Column::Products | Column::Point)
             | Heading::Unit(..)
+            | Heading::SizeUnit(..)
             | Heading::Product
             | Heading::Signed
             | Heading::NoDeviation
@@ -218,17 +219,18 @@ impl Cells<'_> {
         let mut table = Map::new();
         table.insert("shape".to_owned(), Value::from(name));
         let of = |heading: &Heading| match heading {
-            Heading::Size(size) => Some(size.clone()),
+            Heading::Size(size, unit) => Some((*size, unit.unwrap_or(1.0))),
             _ => None,
         };
-        for (size, cell) in self.given(of) {
+        for ((size, si), cell) in self.given(of) {
             let mut numbers = Vec::new();
             for word in cell.split([' ', '×', ';', '/']).filter(|word| !word.is_empty()) {
-                numbers.push(Value::from(Number::parse("size of the shape", word, None)?.value));
+                let number = Number::parse("size of the shape", word, None)?.value;
+                numbers.push(Value::from(number * si));
             }
             let one = numbers.len() == 1;
             let value = if one { numbers.remove(0) } else { Value::from(numbers) };
-            table.insert(size, value);
+            table.insert(size.to_owned(), value);
         }
         let shape: Result<Shape, _> = serde_json::from_value(Value::Object(table));
         shape.map(|shape| Some(Some(shape))).map_err(|error| {

@@ -54,7 +54,10 @@ fn shapes_points_percents_and_attitudes() {
          bolt,craft,1,0,0,0,point,,,,50,,,,,,,\n"
     );
     let error = read(&text).unwrap_err().to_string();
-    assert_eq!(error, "line 4: strut: shape: missing field `length_m`");
+    assert_eq!(
+        error,
+        "line 4: strut: shape: missing field `length_m`; nothing is read from the column \"note\""
+    );
     let text = text
         .replace("strut,craft,12,0,0,0,rod", "strut,craft,12,0,0,0,disc")
         .replace("0,disc,,,", "0,disc,2,,");
@@ -127,6 +130,22 @@ fn what_a_row_lacks_is_named() {
         ("name,mass,mass\na,1,2\n", "line 1: columns \"mass\" and \"mass\" say the same"),
         ("name,mass,sigma_mess\na,1,2\n", "line 1: column \"sigma_mess\" is no standard deviation"),
         ("name,mass,shape\na,1,point\n", "line 2: a: centre_x is missing"),
+        (
+            "name,mass,shape,x_m,y_m\na,1,point,0,0\n",
+            "line 2: a: centre_x is missing; nothing is read from the columns \"x_m\", \"y_m\"",
+        ),
+        (
+            "name,mass,cx,cy,cz,shape,Radius [furlong]\na,1,0,0,0,disc,1\n",
+            "line 1: column \"Radius [furlong]\": radius_m is in \"furlong\"",
+        ),
+        (
+            "name,mass,cx,cy,cz,shape,radius,height_mm\na,1,0,0,0,cylinder,1,2\n",
+            "line 1: column \"cx\" states no unit, and column \"height_mm\" states one",
+        ),
+        (
+            "name,mass,cx [m],cy [m],cz [m],shape,radius_m,Radius [mm]\na,1,0,0,0,disc,1,2\n",
+            "line 1: columns \"radius_m\" and \"Radius [mm]\" say the same",
+        ),
         ("name,mass,cx,cy,cz\na,1,0,0,0\n", "line 2: a: there is no inertia"),
         ("name,mass,cx,cy,cz\na,1,0,0\n", "line 2: the row has 4 values: there must be 5"),
         ("name,mass,cx,cy,cz\n\na,one,0,0,0\n", "line 3: a: mass = \"one\" is not a number"),
@@ -391,4 +410,62 @@ proptest! {
         let _ = PartsTable::with_edges(good.as_bytes(), &text, None);
         let _ = PartsTable::with_edges(&text, b"child,parent\na,all\n", None);
     }
+}
+
+/// Every size of every shape, in every unit and spelling.
+#[test]
+fn sizes_are_read_in_their_units() {
+    let shapes = [
+        ("solid_box", "sides", "1 2 3"),
+        ("plate", "sides", "1 2"),
+        ("rod", "length", "2"),
+        ("disc", "radius", "1"),
+        ("sphere", "radius", "0.7"),
+        ("ellipsoid", "semi_axes", "1/2/2.5"),
+        ("cylinder", "radius|height", "1|2"),
+        ("tube", "inner_radius|outer_radius|height", "1|2|3"),
+        ("frustum", "base_radius|top_radius|height", "1|2|3"),
+        ("torus", "centre_line_radius|section_radius", "2|0.25"),
+    ];
+    let names: std::collections::BTreeSet<String> = shapes
+        .iter()
+        .flat_map(|(_, names, _)| names.split('|'))
+        .map(|n| format!("{n}_m"))
+        .collect();
+    let all: std::collections::BTreeSet<String> =
+        gyradius_inertia::Shape::SIZES.iter().map(|&name| name.to_owned()).collect();
+    assert_eq!(names, all);
+    for (shape, names, sizes) in shapes {
+        let of = |heading: &dyn Fn(&str) -> String| {
+            let headings: Vec<String> = names.split('|').map(heading).collect();
+            let (head, cells) = (headings.join(","), sizes.replace('|', ","));
+            let text = format!("{HEAD},shape,{head}\na,,3,0,0,0,{shape},{cells}\n");
+            let table = read(&text).unwrap_or_else(|error| panic!("{text}: {error}"));
+            table.rows()[0].numbers().unwrap().inertia().entries()
+        };
+        let in_metres = of(&|name| format!("{name}_m"));
+        assert_eq!(of(&|name| name.replace('_', " ")), in_metres);
+        for (unit, si) in [("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254), ("ft", 0.3048)] {
+            let spelled: [&dyn Fn(&str) -> String; 3] = [
+                &|name| format!("{name}_{unit}"),
+                &|name| format!("{} ({unit})", name.replace('_', " ").to_uppercase()),
+                &|name| format!("{name} [{unit}]"),
+            ];
+            for heading in spelled {
+                for (found, metres) in of(heading).into_iter().zip(in_metres) {
+                    assert!((found - metres * si * si).abs() <= 1e-14 * (metres * si * si).abs());
+                }
+            }
+        }
+    }
+}
+
+/// A table without shapes has no sizes: a length in it is no number of a part.
+#[test]
+fn sizes_without_shapes_are_not_read() {
+    let text = "name,parent,mass,cx,cy,cz,ixx,iyy,izz,length,height (max),arm_m\n\
+                craft,,,,,,,,,4,5,6\na,craft,1,0,0,0,1,1,1,1,2,3\n";
+    let table = read(text).unwrap();
+    assert_eq!(table.rows()[0].numbers(), None);
+    assert_eq!(table.passed_over(), ["length", "height (max)", "arm_m"]);
 }

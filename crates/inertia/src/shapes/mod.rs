@@ -134,6 +134,11 @@ macro_rules! constructors {
                 Self::checked(Kind::$kind { $($size),* })
             }
         )*}
+
+        impl Shape {
+            /// The names of the sizes, in the order of the shapes: one that several shapes have stands there for each.
+            pub const SIZES: &[&str] = &[$($(stringify!($size)),*),*];
+        }
     };
 }
 
