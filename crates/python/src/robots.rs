@@ -4,10 +4,10 @@ use gyradius_dispersion::TenParameters;
 use gyradius_formats::{
     CompilerDoubt, FileProblem, Gap, GapKind, LinkProblem, RobotError, RobotFile, RobotLink,
 };
-use pyo3::{PyErr, PyResult, Python, exceptions::PyOSError, pyfunction};
+use pyo3::{PyErr, PyResult, Python, pyfunction};
 use std::path::{Path, PathBuf};
 
-use crate::error::refused;
+use crate::error::{refused, unreadable};
 
 /// Of a link: its name, its ten numbers where it has them, otherwise why not, and whether it has some that cannot be read.
 type Link = (String, Option<[f64; 10]>, Option<String>, bool);
@@ -17,7 +17,7 @@ type Link = (String, Option<[f64; 10]>, Option<String>, bool);
 #[pyfunction]
 pub(crate) fn load_robot(py: Python<'_>, path: PathBuf) -> PyResult<(Vec<Link>, Vec<String>)> {
     py.detach(|| {
-        let robot = RobotFile::read(&path).map_err(|error| unreadable(&path, error))?;
+        let robot = RobotFile::read(&path).map_err(|error| told(&path, &error))?;
         let of = |link: &RobotLink| match link.numbers() {
             Ok(numbers) => {
                 let ten = TenParameters {
@@ -49,20 +49,13 @@ pub(crate) fn load_robot(py: Python<'_>, path: PathBuf) -> PyResult<(Vec<Link>, 
     })
 }
 
-/// What the system does not hand out is the `OSError` that Python has for it, with path and number; all else is refused.
-fn unreadable(path: &Path, error: RobotError) -> PyErr {
-    let RobotError::File(file) = &error else { return refused(error) };
-    let FileProblem::Io(problem) = file.problem() else { return refused(error) };
-    let said = problem.to_string();
-    let path = path.display().to_string();
-    match problem.raw_os_error() {
-        // Python makes the class of it of the number.
-        Some(number) => {
-            let said = said.split(" (os error").next().unwrap_or_default().to_owned();
-            PyOSError::new_err((number, said, path))
-        }
-        None => PyOSError::new_err(format!("{path}: {said}")),
+fn told(path: &Path, error: &RobotError) -> PyErr {
+    if let RobotError::File(file) = error
+        && let FileProblem::Io(problem) = file.problem()
+    {
+        return unreadable(path, problem);
     }
+    refused(error)
 }
 
 /// What is to be said of links that are not among those that were read.

@@ -8,7 +8,8 @@ mod words;
 
 use gyradius_campaign::{Kept, Rows, StoppingRule, Verdict, begun, folder_of};
 use gyradius_study::{
-    AnyScenario, Judged, Notice, Options, Replay, SimulatorReplay, StudyOutcome, Which,
+    AnyScenario, Judged, Notice, Options, Replay, ScenarioError, SimulatorReplay, StudyOutcome,
+    Which,
 };
 use pyo3::{Bound, Py, PyAny, PyResult, Python, pyclass, pymethods, types::PyDict};
 use std::{
@@ -16,7 +17,7 @@ use std::{
     sync::Mutex,
 };
 
-use crate::error::refused;
+use crate::error::{refused, unreadable};
 use called::Called;
 use watched::Watched;
 
@@ -53,7 +54,10 @@ impl ScenarioCore {
         let file = if is_folder { path.join("scenario.toml") } else { path };
         let begun = if is_folder { begun(&folder) } else { None };
         let scenario = if begun.is_none() && function.is_none() && outputs.is_none() {
-            AnyScenario::read(&file).map_err(refused)?
+            AnyScenario::read(&file).map_err(|error| match error {
+                ScenarioError::Read { path, problem } => unreadable(&path, &problem),
+                other => refused(other),
+            })?
         } else {
             let table = match begun {
                 Some(text) => given::parse(&text, &folder)?,

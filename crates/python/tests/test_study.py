@@ -413,6 +413,14 @@ def test_refusals_are_value_errors(wrong: Any, message: str) -> None:
     assert "(line" not in str(told.value)
 
 
+def test_files_that_cannot_be_read_are_os_errors(tmp_path: Path) -> None:
+    missing = tmp_path / "none.toml"
+    for given in [(missing,), (missing, double), (str(missing),)]:
+        with pytest.raises(FileNotFoundError) as told:
+            gyradius.study(*given)
+        assert told.value.filename == str(missing)
+
+
 @pytest.mark.parametrize("name", ["runs", "vehicles", "seed", "look_every", "drivers", "threads"])
 @pytest.mark.parametrize("wrong", [-1, 2.5, math.nan, "many", 2**64, 1j])
 def test_numbers_that_are_none_are_named(name: str, wrong: Any) -> None:

@@ -19,47 +19,57 @@ pub enum PartsFile {
 /// Why a list of parts could not be read.
 #[derive(Debug)]
 pub struct PartsError {
+    place: Box<Place>,
+    problem: PartsProblem,
+}
+
+/// Where it could not be read.
+#[derive(Debug)]
+struct Place {
     file: PartsFile,
     line: Option<usize>,
     name: Option<String>,
-    problem: PartsProblem,
     /// Headings that mean nothing here, one of which may be meant for what is missing.
     passed_over: Vec<String>,
 }
 
 impl PartsError {
     pub(super) fn new(line: usize, name: Option<&str>, problem: PartsProblem) -> Self {
-        let name = name.map(str::to_owned);
-        let passed_over = Vec::new();
-        Self { file: PartsFile::Parts, line: Some(line), name, problem, passed_over }
+        Self::at(Some(line), name, problem)
+    }
+
+    fn at(line: Option<usize>, name: Option<&str>, problem: PartsProblem) -> Self {
+        let (file, name) = (PartsFile::Parts, name.map(str::to_owned));
+        Self { place: Box::new(Place { file, line, name, passed_over: Vec::new() }), problem }
     }
 
     /// With the headings that mean nothing here, if something is missing.
-    pub(super) fn beside(self, passed_over: &[String]) -> Self {
-        let passed_over = match self.problem {
-            PartsProblem::Number(FileBodyError::Missing { .. })
-            | PartsProblem::NoInertia
-            | PartsProblem::NoColumn { .. }
-            | PartsProblem::Shape { .. } => passed_over.to_vec(),
-            _ => Vec::new(),
-        };
-        Self { passed_over, ..self }
+    pub(super) fn beside(mut self, passed_over: &[String]) -> Self {
+        if let PartsProblem::Number(FileBodyError::Missing { .. })
+        | PartsProblem::NoInertia
+        | PartsProblem::NoColumn { .. }
+        | PartsProblem::Shape { .. } = self.problem
+        {
+            self.place.passed_over = passed_over.to_vec();
+        }
+        self
     }
 
-    pub(super) fn in_edges(self) -> Self {
-        Self { file: PartsFile::Edges, ..self }
+    pub(super) fn in_edges(mut self) -> Self {
+        self.place.file = PartsFile::Edges;
+        self
     }
 
     /// The table in which it is.
     #[must_use]
     pub fn file(&self) -> PartsFile {
-        self.file
+        self.place.file
     }
 
     /// Line, from 1, if the problem has one.
     #[must_use]
     pub fn line(&self) -> Option<usize> {
-        self.line
+        self.place.line
     }
 
     /// What is wrong.
@@ -71,32 +81,27 @@ impl PartsError {
 
 impl From<Refusal> for PartsError {
     fn from(Refusal { line, problem }: Refusal) -> Self {
-        Self {
-            file: PartsFile::Parts,
-            line,
-            name: None,
-            problem: PartsProblem::File(problem),
-            passed_over: Vec::new(),
-        }
+        Self::at(line, None, PartsProblem::File(problem))
     }
 }
 
 impl fmt::Display for PartsError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(line) = self.line {
+        let Place { file: _, line, name, passed_over } = &*self.place;
+        if let Some(line) = line {
             write!(f, "line {line}: ")?;
         }
-        if let Some(name) = &self.name {
+        if let Some(name) = name {
             write!(f, "{}: ", shortened(name))?;
         }
         write!(f, "{}", self.problem)?;
-        match self.passed_over.as_slice() {
+        match passed_over.as_slice() {
             [] => Ok(()),
             [one] => write!(f, "; nothing is read from the column {one:?}"),
             some => {
-                let named: Vec<String> =
-                    some.iter().take(NAMED).map(|heading| format!("{heading:?}")).collect();
-                write!(f, "; nothing is read from the columns {}", named.join(", "))?;
+                let named = some.iter().take(NAMED).map(|heading| format!("{heading:?}"));
+                let named = named.collect::<Vec<_>>().join(", ");
+                write!(f, "; nothing is read from the columns {named}")?;
                 match some.len().saturating_sub(NAMED) {
                     0 => Ok(()),
                     more => write!(f, " and {more} more"),

@@ -318,6 +318,8 @@ def study(
     ------
     ValueError
         The scenario is refused; the folder holds another study; the first runs of a simulation without declared outputs fail.
+    OSError
+        The file of the scenario cannot be read: `FileNotFoundError`, `PermissionError`.
     KeyboardInterrupt
         After Ctrl-C, once the runs at hand have ended. With ``out``, the blocks of runs that were finished stay, and the same call
         goes on.

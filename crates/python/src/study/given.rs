@@ -3,7 +3,6 @@
 use gyradius_study::{AnyScenario, ScenarioError, parse_toml};
 use pyo3::{
     Bound, PyAny, PyResult,
-    exceptions::PyOSError,
     types::{
         PyAnyMethods, PyBool, PyFloat, PyInt, PyMapping, PyMappingMethods, PyString, PyTypeMethods,
     },
@@ -11,7 +10,10 @@ use pyo3::{
 use std::path::Path;
 use toml::{Table, Value};
 
-use crate::{error::refused, words::in_python};
+use crate::{
+    error::{refused, unreadable},
+    words::in_python,
+};
 
 /// Deepest nesting of a scenario.
 const DEEPEST: usize = 32;
@@ -20,8 +22,7 @@ const SIMULATION: &str = "simulation";
 
 /// What stands in a scenario file.
 pub(super) fn read(path: &Path) -> PyResult<Table> {
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| PyOSError::new_err(format!("cannot read {}: {error}", path.display())))?;
+    let text = std::fs::read_to_string(path).map_err(|error| unreadable(path, &error))?;
     parse(&text, path)
 }
 
