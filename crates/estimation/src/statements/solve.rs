@@ -11,6 +11,10 @@ use super::{
 const MET: f64 = 4e-3;
 /// A share of the most that the inertia can follow, which may be the most.
 const NEARLY: f64 = 0.95;
+/// The inertia follows the mass wholly up to this relative error of a deviation, and less only for a largest error that is
+/// this share of the one that there is else.
+const SMALL_MISS: f64 = 0.02;
+const WORTH_LESS: f64 = 0.5;
 
 /// Times that the search starts anew about the best, while that is better.
 const AGAIN: usize = 4;
@@ -39,9 +43,36 @@ pub(super) struct Solution {
 }
 
 impl Task {
-    /// Searches with independent roots and rotations, and with correlated ones where these do not do.
+    /// The inertia follows the mass wholly, unless what is stated comes out far nearer if it follows less.
     pub(super) fn solve(&self) -> Solution {
-        let mut unknowns = Unknowns::new(self);
+        let mut best = self.search(false);
+        let most = self.mass.map_or(0.0, |(_, most)| most);
+        let miss = self.worst(&best);
+        if most > 0.0 && self.moments.is_stated() && miss > SMALL_MISS {
+            let mut less = self.search(true);
+            // Nearly wholly is wholly, where nothing is lost by it.
+            let wholly = Point { follows: most, ..less };
+            let loses_nothing = || self.worst(&wholly) < self.worst(&less).max(MET);
+            if less.follows > NEARLY * most && loses_nothing() {
+                less = wholly;
+            }
+            if self.worst(&less) < WORTH_LESS * miss {
+                best = less;
+            }
+        }
+        let mut with_centre = [None; 6];
+        for it in self.compare(&best) {
+            let asked = if it.entry < 3 { self.moments } else { self.products };
+            if !asked.is_stated() {
+                with_centre[it.entry] = Some(it.wanted.sqrt());
+            }
+        }
+        Solution { scatter: best.scatter, follows: best.follows, with_centre }
+    }
+
+    /// Searches with independent roots and rotations, and with correlated ones where these do not do.
+    fn search(&self, shares: bool) -> Point {
+        let mut unknowns = Unknowns::new(self, shares);
         let mut best = unknowns.downhill(unknowns.guess);
         if self.worst(&best.0.at) > MET {
             unknowns = unknowns.correlated();
@@ -61,21 +92,7 @@ impl Task {
             let around = beside.around(&best.0.x);
             beside.improve(&mut best, around);
         }
-        let mut best = best.0.at;
-        // Nearly wholly is wholly, where nothing is lost by it.
-        let most = self.mass.map_or(0.0, |(_, most)| most);
-        let wholly = Point { follows: most, ..best };
-        if best.follows > NEARLY * most && self.worst(&wholly) < self.worst(&best).max(MET) {
-            best = wholly;
-        }
-        let mut with_centre = [None; 6];
-        for it in self.compare(&best) {
-            let asked = if it.entry < 3 { self.moments } else { self.products };
-            if !asked.is_stated() {
-                with_centre[it.entry] = Some(it.wanted.sqrt());
-            }
-        }
-        Solution { scatter: best.scatter, follows: best.follows, with_centre }
+        best.0.at
     }
 }
 

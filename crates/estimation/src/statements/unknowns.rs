@@ -50,8 +50,9 @@ pub(super) struct Trial {
 }
 
 impl<'a> Unknowns<'a> {
-    /// Those of independent roots and rotations, as far as anything is asked of them.
-    pub(super) fn new(task: &'a Task) -> Self {
+    /// Those of independent roots and rotations, as far as anything is asked of them, and perhaps the share of the mass that
+    /// the inertia follows.
+    pub(super) fn new(task: &'a Task, shares: bool) -> Self {
         let mut open = Vec::new();
         if task.moments != Asked::Nothing {
             open.extend(ROOTS..ROOTS_BESIDE);
@@ -59,7 +60,7 @@ impl<'a> Unknowns<'a> {
         if task.products != Asked::Nothing {
             open.extend(TURNS..TURN_ANGLES);
         }
-        if task.mass.is_some_and(|(_, most)| most > 0.0) && task.moments.is_stated() {
+        if shares {
             open.push(SHARE);
         }
         let basis = Matrix3::from_diagonal(&first_roots(task));
