@@ -17,7 +17,7 @@ use crate::{
 /// So many standard errors between what two searches make of the event are no chance.
 const APART: f64 = 4.0;
 /// Differences below this factor are of no concern.
-const ALIKE: f64 = 1.25;
+const ALIKE: f64 = 1.15;
 
 /// Importance sampling in normal scores: from a law that searches have found, with exact weights.
 ///
@@ -206,7 +206,9 @@ impl SteeredSampling {
     /// What two searches tell of the event, the most different ones, if that is no chance.
     fn apart(&self, confidence: Confidence) -> Option<[f64; 2]> {
         let told = self.hits_of_search.iter().filter_map(|hits| hits.finish(confidence).ok());
+        // Where each search found as much elsewhere, all together tell more than any of them.
         let told: Vec<(f64, f64)> = told
+            .chain(self.hits.finish(confidence).ok())
             .map(|found| (found.probability(), found.coefficient_of_variation().unwrap_or(1.0)))
             .collect();
         let mut worst = None;
@@ -270,8 +272,8 @@ pub enum SteeredWarning {
         /// How many.
         searches: usize,
     },
-    /// Runs where one search led tell another probability than runs where another led, by more than four standard errors:
-    /// they have found different ways to the event.
+    /// Runs where one search led tell another probability than runs where another led, or than all runs together, by more than four
+    /// standard errors: the searches have found different ways to the event.
     SearchesDiffer {
         /// The smaller probability.
         one: f64,

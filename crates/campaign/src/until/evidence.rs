@@ -34,6 +34,8 @@ struct RunningMean {
     mean: f64,
     /// Of the distances to the mean.
     squares: f64,
+    /// The smallest and the largest.
+    ends: [f64; 2],
 }
 
 impl Evidence {
@@ -41,7 +43,9 @@ impl Evidence {
     #[must_use]
     pub fn new(rule: StoppingRule, requirements: Vec<Vec<Requirement>>, group: u64) -> Self {
         let mean = rule.quantity().cloned();
-        let mean = mean.map(|quantity| RunningMean { quantity, n: 0, mean: 0.0, squares: 0.0 });
+        let ends = [f64::INFINITY, f64::NEG_INFINITY];
+        let mean =
+            mean.map(|quantity| RunningMean { quantity, n: 0, mean: 0.0, squares: 0.0, ends });
         let of_model = |own: Vec<Requirement>| {
             let requirements = own.into_iter().map(|own| (own, Tally::default())).collect();
             OfModel { requirements, mean: mean.clone() }
@@ -128,9 +132,11 @@ impl RunningMean {
         let before = x - self.mean;
         self.mean += before / self.n as f64;
         self.squares += before * (x - self.mean);
+        self.ends = [self.ends[0].min(x), self.ends[1].max(x)];
     }
 
     fn is_known(&self, rule: FixedWidth) -> bool {
-        self.n > 1 && rule.is_reached(self.n, self.squares / (self.n - 1) as f64)
+        let range = self.ends[1] - self.ends[0];
+        self.n > 1 && rule.is_reached(self.n, self.squares / (self.n - 1) as f64, range)
     }
 }

@@ -143,7 +143,10 @@ proptest! {
                         let n = there.len() as f64;
                         let mean = there.iter().sum::<f64>() / n;
                         let squares = there.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>();
-                        there.len() > 1 && rule.is_reached(there.len() as u64, squares / (n - 1.0))
+                        let most = there.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                        let least = there.iter().copied().fold(f64::INFINITY, f64::min);
+                        there.len() > 1
+                            && rule.is_reached(there.len() as u64, squares / (n - 1.0), most - least)
                     }
                 };
                 prop_assert_eq!(evidence.is_enough().unwrap(), expected, "{} after {}", rule, end);

@@ -9,10 +9,11 @@ const WIDE: f64 = 3.0;
 const OFTEN: f64 = 0.9;
 /// A standard deviation stays 1 unless its square is so many standard errors off.
 const SURE: f64 = 3.0;
-/// Each of two parts has at least so many runs of equal weight, and this share.
+/// Most parts of a mixture. Each has at least so many runs of equal weight, and this share.
+const MOST_PARTS: usize = 12;
 const FEW: f64 = 4.0;
-const SMALL: f64 = 0.05;
-/// Two parts must be worth so much more likelihood for each further parameter.
+const SMALL: f64 = 0.02;
+/// A further part must be worth so much more likelihood for each of its parameters.
 const WORTH: f64 = 1.5;
 /// Steps of an iteration that splits runs.
 const STEPS: usize = 20;
@@ -26,7 +27,7 @@ pub(super) struct Elite<'a> {
 /// A law of each score.
 type Singles = Vec<Single>;
 
-/// Laws with their shares, one or two; none if no run has a weight. Two are kept as long as there are runs near both of those
+/// Laws with their shares; none if no run has a weight. Several are kept as long as there are runs near each of those
 /// before. No standard deviation is below 1, and no event less frequent than at the start, if they are to lead further: a narrow part
 /// would be left behind by a wide one.
 pub(super) fn fit(
@@ -36,27 +37,17 @@ pub(super) fn fit(
     leads_on: bool,
 ) -> Option<Vec<(f64, Singles)>> {
     let weights: Vec<f64> = elites.iter().map(|elite| elite.weight).collect();
-    let (raw, cautious, count) = singles(elites, start, &weights)?;
+    let (raw, cautious, _) = singles(elites, start, &weights)?;
+    let kept = (before.len() > 1).then(|| {
+        maximised(elites, start, elites.iter().map(|elite| shares(elite, before)).collect())
+    });
+    let parts = split(elites, start, kept.flatten().unwrap_or_else(|| vec![(1.0, raw)]));
     let mut found = vec![(1.0, cautious)];
-    let two = if let [_, _] = before {
-        let near = elites.iter().map(|elite| shares(elite, before)[0]).collect();
-        maximised(elites, start, near)
-    } else {
-        let all: f64 = weights.iter().sum();
-        let likelihood = |parts: &[(f64, Singles)]| -> f64 {
-            let of = |elite: &Elite<'_>| elite.weight * log_sum(&logs(elite, parts));
-            elites.iter().map(of).sum::<f64>() / all
-        };
-        let worth = WORTH * (2 * start.len() + 1) as f64;
-        let two = halves(elites, &raw).and_then(|halves| maximised(elites, start, halves));
-        let whole = likelihood(&[(1.0, raw)]);
-        two.filter(|two| count * (likelihood(two) - whole) > worth)
-    };
-    if let Some(two) = two {
+    if parts.len() > 1 {
         found.clear();
         // What is drawn from is as cautious as a single law.
-        for (part, (share, _)) in two.iter().enumerate() {
-            let mine = elites.iter().map(|elite| elite.weight * shares(elite, &two)[part]);
+        for (part, (share, _)) in parts.iter().enumerate() {
+            let mine = elites.iter().map(|elite| elite.weight * shares(elite, &parts)[part]);
             found.push((*share, singles(elites, start, &mine.collect::<Vec<_>>())?.1));
         }
     }
@@ -74,6 +65,42 @@ pub(super) fn fit(
         }
     }
     Some(found)
+}
+
+/// Divides the part that is the most worth dividing, as long as one is.
+fn split(
+    elites: &[Elite<'_>],
+    start: &[Single],
+    mut parts: Vec<(f64, Singles)>,
+) -> Vec<(f64, Singles)> {
+    let all: f64 = elites.iter().map(|elite| elite.weight).sum();
+    let squares: f64 = elites.iter().map(|elite| elite.weight * elite.weight).sum();
+    let likelihood = |parts: &[(f64, Singles)]| -> f64 {
+        let of = |elite: &Elite<'_>| elite.weight * log_sum(&logs(elite, parts));
+        elites.iter().map(of).sum::<f64>() / all
+    };
+    // For each run of equal weight.
+    let worth = WORTH * (2 * start.len() + 1) as f64 * squares / (all * all);
+    while parts.len() < MOST_PARTS {
+        let near: Vec<Vec<f64>> = elites.iter().map(|elite| shares(elite, &parts)).collect();
+        let divided = (0..parts.len()).filter_map(|part| {
+            let sides = halves(elites, &near, part, &parts[part].1)?;
+            let near = near.iter().zip(sides).map(|(near, side)| {
+                let (mut near, whole) = (near.clone(), near[part]);
+                near[part] = whole * side;
+                near.push(whole * (1.0 - side));
+                near
+            });
+            let found = maximised(elites, start, near.collect())?;
+            Some((likelihood(&found), found))
+        });
+        let Some((height, found)) = divided.max_by(|(a, _), (b, _)| a.total_cmp(b)) else { break };
+        if !(height - likelihood(&parts) > worth) {
+            break;
+        }
+        parts = found;
+    }
+    parts
 }
 
 /// The likeliest laws of weighted runs, the same with caution, and how many runs of equal weight they are.
@@ -128,10 +155,15 @@ fn singles(
     Some((raw, cautious, count))
 }
 
-/// For each run 1 or 0: on which side it is, across the direction in which runs scatter most about the middle of a law.
-fn halves(elites: &[Elite<'_>], whole: &Singles) -> Option<Vec<f64>> {
-    let scores = whole.len();
-    let centred = |elite: &Elite<'_>, j: usize| match whole[j] {
+/// For each run 1 or 0: on which side it is, across the direction in which those near a part scatter most about its middle.
+fn halves(
+    elites: &[Elite<'_>],
+    near: &[Vec<f64>],
+    part: usize,
+    middle: &Singles,
+) -> Option<Vec<f64>> {
+    let scores = middle.len();
+    let centred = |elite: &Elite<'_>, j: usize| match middle[j] {
         Single::Normal { mean, .. } => elite.scores[j] - mean,
         Single::Tail(_) => 0.0,
     };
@@ -139,13 +171,15 @@ fn halves(elites: &[Elite<'_>], whole: &Singles) -> Option<Vec<f64>> {
         direction.iter().enumerate().map(|(j, d)| d * centred(elite, j)).sum()
     };
     // Power iteration, from the run that is farthest off.
-    let far = |elite: &Elite<'_>| (0..scores).map(|j| centred(elite, j).powi(2)).sum::<f64>();
-    let start = elites.iter().max_by(|a, b| far(a).total_cmp(&far(b)))?;
+    let far = |(elite, near): (&Elite<'_>, &Vec<f64>)| {
+        near[part] * (0..scores).map(|j| centred(elite, j).powi(2)).sum::<f64>()
+    };
+    let (start, _) = elites.iter().zip(near).max_by(|a, b| far(*a).total_cmp(&far(*b)))?;
     let mut direction: Vec<f64> = (0..scores).map(|j| centred(start, j)).collect();
     for _ in 0..STEPS {
         let mut next = vec![0.0; scores];
-        for elite in elites {
-            let factor = elite.weight * along(elite, &direction);
+        for (elite, near) in elites.iter().zip(near) {
+            let factor = near[part] * elite.weight * along(elite, &direction);
             for (j, entry) in next.iter_mut().enumerate() {
                 *entry += factor * centred(elite, j);
             }
@@ -160,22 +194,20 @@ fn halves(elites: &[Elite<'_>], whole: &Singles) -> Option<Vec<f64>> {
     Some(elites.iter().map(side).collect())
 }
 
-/// A mixture of two laws, by expectation and maximisation from the share that each run has in the first; none if one of them
+/// A mixture of several laws, by expectation and maximisation from the share that each run has in each of them; none if one of them
 /// has too few.
 fn maximised(
     elites: &[Elite<'_>],
     start: &[Single],
-    mut first: Vec<f64>,
+    mut near: Vec<Vec<f64>>,
 ) -> Option<Vec<(f64, Singles)>> {
     let all: f64 = elites.iter().map(|elite| elite.weight).sum();
     let mut parts = Vec::new();
     for _ in 0..STEPS {
         parts.clear();
-        for other in [false, true] {
-            let share = |(elite, share): (&Elite<'_>, &f64)| {
-                elite.weight * if other { 1.0 - share } else { *share }
-            };
-            let weights: Vec<f64> = elites.iter().zip(&first).map(share).collect();
+        for part in 0..near.first()?.len() {
+            let share = |(elite, near): (&Elite<'_>, &Vec<f64>)| elite.weight * near[part];
+            let weights: Vec<f64> = elites.iter().zip(&near).map(share).collect();
             let (law, _, count) = singles(elites, start, &weights)?;
             let share = weights.iter().sum::<f64>() / all;
             if count < FEW || share < SMALL {
@@ -183,7 +215,7 @@ fn maximised(
             }
             parts.push((share, law));
         }
-        first = elites.iter().map(|elite| shares(elite, &parts)[0]).collect();
+        near = elites.iter().map(|elite| shares(elite, &parts)).collect();
     }
     Some(parts)
 }

@@ -32,8 +32,8 @@ const FEWEST: usize = 100;
 /// runs draw what no score leads to. Level by level the runs come nearer, until 30 or more are the event. Two last levels then fit
 /// the law to all runs that are the event.
 ///
-/// What is fitted is one normal law or a mixture of two, with independent scores: two, where the likelihood says that there
-/// are two ways, as to both limits of an absolute value. Standard deviations are kept between 0.3 and 3, and stay 1 unless they are surely
+/// What is fitted is one normal law or a mixture of up to twelve, with independent scores: several, where the likelihood says that there
+/// are several ways, as to both limits of an absolute value. Standard deviations are kept between 0.3 and 3, and stay 1 unless they are surely
 /// another; means are shrunk by what they owe to chance (James & Stein 1961).
 #[derive(Clone, Debug, getset::CopyGetters, getset::Getters)]
 pub struct ScoreSearch {

@@ -103,7 +103,7 @@ fn assert_covers(what: &str, plan: Plan, truth: f64, excess: Excess<'_>) {
     let (covered, warned, mean) = covers(what, plan, truth, 40, excess);
     // 34 of 40 or fewer are found once in 250 times at 95 %.
     assert!(
-        covered >= 34 && (mean - 1.0).abs() < 0.05 && warned <= 4,
+        covered >= 34 && (mean - 1.0).abs() < 0.05 && warned <= 5,
         "{what}: {covered} {mean} {warned}"
     );
 }
@@ -466,4 +466,34 @@ fn both_methods_agree_with_plain_runs() {
         let found = found.unwrap();
         overlaps("subset", found.probability(), found.interval(), found.evaluations());
     }
+}
+
+/// Any one of many scores can cause the event alone, and two searches find some of these ways: that there are more is told, or the
+/// interval holds all the same. (Of such a mixture of two laws as was fitted once, 20 of these 48 answers were wrong, and not warned of.)
+#[test]
+fn ways_that_were_missed_are_warned_of() {
+    let mut unwarned = Vec::new();
+    for (scores, limit) in [(4, 4.2), (6, 4.3), (10, 4.5)] {
+        let plan = Plan { scores, sample: 10_000, ..PLAN };
+        let truth = -libm::expm1(scores as f64 * libm::log1p(-tail::normal(limit)));
+        let largest =
+            |z: &[f64], _: &mut ChaCha8Rng| z.iter().copied().fold(f64::MIN, f64::max) - limit;
+        for seed in 0..16 {
+            let found = estimate(plan, seed, &largest);
+            if !found.interval().contains(truth) && found.warnings().is_empty() {
+                unwarned.push((scores, seed));
+            }
+        }
+    }
+    assert!(unwarned.len() <= 6, "{unwarned:?}");
+}
+
+/// With more runs of a level, all of them are found.
+#[test]
+fn many_ways_are_found_with_many_runs() {
+    let plan = Plan { scores: 6, per_level: 5000, sample: 10_000, ..PLAN };
+    let truth = -libm::expm1(6.0 * libm::log1p(-tail::normal(4.3)));
+    let largest = |z: &[f64], _: &mut ChaCha8Rng| z.iter().copied().fold(f64::MIN, f64::max) - 4.3;
+    let held = (0..8).filter(|seed| estimate(plan, *seed, &largest).interval().contains(truth));
+    assert!(held.count() >= 7);
 }
