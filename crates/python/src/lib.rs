@@ -55,7 +55,7 @@ mod _core {
     #[pymodule_export]
     use super::stream::Draws;
     #[pymodule_export]
-    use super::study::{ScenarioCore, StudyCore};
+    use super::study::{ScenarioCore, StudyCore, end_all};
     #[pymodule_export]
     use super::tensors::{
         body_of_parts, inertia_is_realizable, inertia_margin, inertia_nearest,

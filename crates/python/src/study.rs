@@ -21,6 +21,8 @@ use crate::error::{refused, unreadable};
 use called::Called;
 use watched::Watched;
 
+pub(crate) use watched::end_all;
+
 /// A scenario, as it is to be run.
 #[pyclass(frozen, module = "gyradius._core")]
 pub(crate) struct ScenarioCore {

@@ -36,7 +36,7 @@ def objects() -> dict[str, object]:
         "stated": gyradius.law(link, mass="5%", moments="1%"),
         "number": normal(1.0, 2.0),
         "uniform": gyradius.uniform_attitude(),
-        "small": gyradius.small_rotations([0, 0, 0, 1], np.eye(3)),
+        "small": gyradius.small_rotations([0, 0, 0, 1], 0.05 * np.eye(3)),
         "bingham": gyradius.bingham(np.diag([1.0, 2.0, 3.0, 0.0])),
         "turns": gyradius.about_axis([0, 0, 0, 1], [0, 0, 1]),
         "inertia": inertia,

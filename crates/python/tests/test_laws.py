@@ -110,6 +110,7 @@ def test_uniform_attitudes_are_uniform() -> None:
     assert np.allclose(law.logpdf(q), 0.0)
 
 
+@pytest.mark.filterwarnings("ignore:cov. rotations of")
 def test_densities_of_attitudes_integrate_to_one() -> None:
     uniform_q = gyradius.uniform_attitude().rvs(200_000, rng=1)
     mean = np.array([0.1, 0.2, -0.3, 0.9])
@@ -492,3 +493,31 @@ def test_axes_limit_the_turns_beside_products() -> None:
     law = gyradius.law(body, axes="0.1deg", products="0.1kgm2")
     most = np.deg2rad(0.1) * np.array([1.0, 2.0, 1.0])
     assert (law.std[7:] <= 1.01 * most).all()
+
+
+@pytest.mark.parametrize("degrees", [1, 5, 10, 14, 20, 30, 60])
+def test_rotations_that_are_not_small_are_warned_of(degrees: float) -> None:
+    asked = np.eye(3) * np.radians(degrees) ** 2
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        law = gyradius.small_rotations([0.1, 0.2, 0.3, 0.9], asked)
+    had = np.sqrt(np.diag(law.cov) / np.diag(asked))
+    assert bool(told) == (had.min() < 0.95)
+    assert (degrees <= 14) != bool(told)
+    for warning in told:
+        assert f"rotations of {degrees}° are not small" in str(warning.message)
+        assert warning.filename == __file__
+
+
+def test_slips_of_the_unit_are_refused() -> None:
+    body = gyradius.MassProperties(10.0, [0, 0, 0], np.diag([0.1, 0.15, 0.2]))
+    bodies = gyradius.law(body, mass="4%", moments="6%", axes="1deg").rvs(60, rng=3)
+    ten = np.column_stack([bodies.mass, bodies.centre, bodies.inertia[:, [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]])
+    ten[7, 0] *= 1000.0
+    ten[7, 4:] *= 1000.0
+    inertia = np.zeros((60, 3, 3))
+    for column, (i, j) in enumerate([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]):
+        inertia[:, i, j] = inertia[:, j, i] = ten[:, 4 + column]
+    slip = gyradius.MassProperties(ten[:, 0], ten[:, 1:4], inertia)
+    with pytest.raises(ValueError, match="body 8: its mass is"):
+        gyradius.MassPropertiesLaw.fit(slip)

@@ -172,3 +172,13 @@ def test_bits_of_rust() -> None:
         for place, expected in vectors["draws"][name].items():
             drawn = made.rvs(rng=key(vectors["seed"], vectors["term"], int(place))).array
             assert drawn.tolist() == expected
+
+
+def test_whole_numbers_up_to_the_largest_are_places() -> None:
+    both = gyradius.key(1, index=[2**64 - 1, 0])
+    assert both.index is not None and both.index.tolist() == [2**64 - 1, 0]
+    one = gyradius.key(1, index=2**64 - 1)
+    assert one.index is not None and one.index.tolist() == 2**64 - 1
+    for wrong, named in [([2**64], "18446744073709551616"), ([-1, 2**63], "-1"), ([1.5], "float64"), ([True], "bool")]:
+        with pytest.raises(ValueError, match=named):
+            gyradius.key(1, index=wrong)

@@ -11,6 +11,7 @@ import sys
 import textwrap
 import threading
 import time
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -411,6 +412,30 @@ def test_refusals_are_value_errors(wrong: Any, message: str) -> None:
     with pytest.raises((ValueError, OSError), match=message) as told:
         gyradius.study(wrong, double)
     assert "(line" not in str(told.value)
+
+
+@pytest.mark.parametrize("answer", [1j, np.complex128(1 + 5j), np.array("3.5"), np.str_("3.5"), np.void(b"12345678"), "3.5"])
+def test_outputs_that_are_no_real_numbers_fail(answer: Any) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", category=np.exceptions.ComplexWarning)
+        with pytest.warns(RuntimeWarning, match="the output `y` is"):
+            study = gyradius.study(scenario(runs=3), lambda inputs: {"y": answer}, outputs={"y": "1"})
+    assert list(study.failed.values()) == [3]
+
+
+@pytest.mark.parametrize("daemon", ["time.sleep(0.01)", "sum(range(20_000))"])
+def test_a_program_ends_while_a_daemon_is_in_a_study(daemon: str) -> None:
+    program = f"""
+import threading, time, gyradius
+def simulate(inputs):
+    {daemon}
+    return {{"y": 1.0}}
+scenario = {{"name": "t", "runs": 100_000, "quantities": [{{"name": "a", "law": gyradius.normal(0.0, 1.0)}}]}}
+threading.Thread(target=lambda: gyradius.study(scenario, simulate, outputs={{"y": "1"}}), daemon=True).start()
+time.sleep(0.7)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_files_that_cannot_be_read_are_os_errors(tmp_path: Path) -> None:

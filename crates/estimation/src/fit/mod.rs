@@ -37,7 +37,7 @@ const NEEDED: usize = 13;
 /// A second moment below this share of the trace is rounding, and the body a plate.
 const ROUNDING: f64 = 1e-13;
 /// A sample this many times as large as the median of all is no sample of the same body: g for kg is a thousand.
-const LARGER: f64 = 500.0;
+pub(crate) const LARGER: f64 = 500.0;
 /// A root below this share of the size of the body is none, of a rod: with two of these there would be no axes, and no body
 /// that turns. Second moments of 2.5e-9 stand for them.
 const THIN: f64 = 5e-5;
@@ -87,6 +87,15 @@ pub enum PrincipalFitError {
     /// The roots are out of range.
     #[error(transparent)]
     Roots(#[from] ScalarRootsError),
+}
+
+/// The place of a number that is so large beside the others that it must be in another unit, and their median.
+pub(crate) fn far_larger(numbers: &[f64]) -> Option<(usize, f64)> {
+    let mut sorted = numbers.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let median = *sorted.get(sorted.len() / 2)?;
+    let index = numbers.iter().position(|number| !(number / median <= LARGER))?;
+    Some((index, median))
 }
 
 impl From<FitError> for PrincipalFitError {
@@ -207,10 +216,7 @@ impl PrincipalFit {
             return Err(PrincipalFitError::Point { index });
         }
         let sums: Vec<f64> = samples.iter().map(|s| s.matrix().trace()).collect();
-        let mut sorted = sums.clone();
-        sorted.sort_by(f64::total_cmp);
-        let median = sorted[sorted.len() / 2];
-        if let Some(index) = sums.iter().position(|sum| !(sum / median <= LARGER)) {
+        if let Some((index, median)) = far_larger(&sums) {
             return Err(PrincipalFitError::Large { index, sum: sums[index], median });
         }
         // In an order of their own, so that the same samples have the same fit in any order.

@@ -12,7 +12,7 @@ use gyradius_dispersion::{
 use gyradius_inertia::{Inertia, MassProperties, MassPropertiesError};
 use nalgebra::SMatrix;
 
-use crate::fit::{AxesFinding, PrincipalFit, PrincipalFitError, RootEstimate};
+use crate::fit::{AxesFinding, LARGER, PrincipalFit, PrincipalFitError, RootEstimate, far_larger};
 
 pub use goodness::{MassAspect, MassAssessment, MassTest};
 pub use scalar::{ScalarEstimate, ScalarFit};
@@ -113,8 +113,16 @@ impl MassPropertiesFit {
         };
         let inertias = bodies.iter().enumerate().map(one).collect::<Result<Vec<Inertia>, _>>()?;
         let lengths = PrincipalFit::new(&inertias)?;
-        let size = lengths.nominal().second_moments().values().iter().sum::<f64>().sqrt();
+        // Of one kilogram each, bodies in another unit of mass are like all others.
         let masses: Vec<f64> = bodies.iter().map(MassProperties::mass_kg).collect();
+        if let Some((index, median)) = far_larger(&masses) {
+            return Err(MassPropertiesFitError::Large { index, mass_kg: masses[index], median });
+        }
+        let sums: Vec<f64> = bodies.iter().map(|body| body.inertia().matrix().trace()).collect();
+        if let Some((index, median)) = far_larger(&sums) {
+            return Err(PrincipalFitError::Large { index, sum: sums[index], median }.into());
+        }
+        let size = lengths.nominal().second_moments().values().iter().sum::<f64>().sqrt();
         let mass = ScalarFit::of_mass(&masses, choice);
         let columns: [Vec<f64>; 3] =
             std::array::from_fn(|i| bodies.iter().map(|b| b.mass_centre_m()[i]).collect());
@@ -217,7 +225,7 @@ impl MassPropertiesFitError {
     #[must_use]
     pub fn body(&self) -> Option<usize> {
         match self {
-            Self::Body { index, .. } => Some(*index),
+            Self::Body { index, .. } | Self::Large { index, .. } => Some(*index),
             Self::Principal(error) => error.sample(),
             Self::Scalar(_) | Self::Law(_) => None,
         }
@@ -235,6 +243,20 @@ pub enum MassPropertiesFitError {
         index: usize,
         /// Why.
         error: MassPropertiesError,
+    },
+    /// A body is so heavy beside the others that the law of all would be about nothing but this one.
+    #[error(
+        "body {}: its mass is {mass_kg:.3e} kg, {:.1e} times the median of the bodies; a fit allows up to {LARGER} times: the \
+         body has another unit, or a slip of the decimal point",
+        index + 1, mass_kg / median
+    )]
+    Large {
+        /// Its place, from 0.
+        index: usize,
+        /// Its mass, kg.
+        mass_kg: f64,
+        /// The median of the masses of all bodies, kg.
+        median: f64,
     },
     /// The inertias have no fit.
     #[error(transparent)]

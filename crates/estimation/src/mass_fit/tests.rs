@@ -160,6 +160,18 @@ fn what_cannot_be_fitted_is_refused() {
     with_point[3] = MassProperties::point(1.0, [0.0; 3]).unwrap();
     let error = MassPropertiesFit::new(&with_point, MassChoice::default()).unwrap_err();
     assert!(error.to_string().contains("sample 4"), "{error}");
+    // Grams among kilograms: the mass alone, and mass and inertia together, which a body of one kilogram does not show.
+    for inertia_too in [false, true] {
+        let mut slip = bodies.clone();
+        let (mass_kg, centre) = (1000.0 * slip[7].mass_kg(), slip[7].mass_centre_m());
+        slip[7] = if inertia_too {
+            slip[7].with_mass(mass_kg).unwrap()
+        } else {
+            MassProperties::new(mass_kg, centre, *slip[7].inertia()).unwrap()
+        };
+        let error = MassPropertiesFit::new(&slip, MassChoice::default()).unwrap_err();
+        assert!(error.to_string().contains("body 8: its mass is"), "{error}");
+    }
     let mut huge = bodies;
     huge[5] = MassProperties::new(1e-200, Vector3::zeros(), *huge[5].inertia()).unwrap();
     assert!(MassPropertiesFit::new(&huge, MassChoice::default()).is_err());

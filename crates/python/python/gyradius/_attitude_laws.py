@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -80,7 +81,12 @@ class AttitudeLaw(Law):
 
     @staticmethod
     def fit(q: ArrayLike, *, order: str = "xyzw") -> Fit[AttitudeLaw]:
-        """A radially constrained Gaussian of attitudes (n, 4), by maximum likelihood."""
+        """A radially constrained Gaussian of attitudes (n, 4), by maximum likelihood.
+
+        The covariance of the turns of the fitted law is ``fit.law.cov``. What ``fit.found`` calls ``turn_covariance_rad2`` is a
+        parameter of the law, four times the inverse of the tangent block of Σ⁻¹: it is the covariance of turns that are small where the law
+        falls as a Gaussian does, and may be any of wide ones.
+        """
         law, found = _core.fit_attitudes(attitudes("q", q, order)[0])
         return Fit(law=make(AttitudeLaw, "of_form", law), found=json.loads(found), fits=None, p_value=None, notes=())
 
@@ -116,8 +122,26 @@ def small_rotations(mean: ArrayLike, cov: ArrayLike, *, order: str = "xyzw") -> 
 
     A draw is the mean times a small rotation, about the axes that the mean takes components from: body axes, where the attitude is
     that of principal axes. The rotation is twice the vector part of its quaternion, which is the rotation vector where it is small.
+
+    Rotations of more than some 15° about each axis are not small: no more than 180° can be had, and ``law.cov`` is less than what is asked
+    for. Of 30° about each axis it has 23°, and it never has more than some 28°.
+
+    Warns
+    -----
+    UserWarning
+        A deviation of the rotations is more than 5 % below what is asked for.
     """
-    return make(AttitudeLaw, "of_small_rotations", one_attitude("mean", mean, order), nested("cov", cov, 3))
+    law = make(AttitudeLaw, "of_small_rotations", one_attitude("mean", mean, order), nested("cov", cov, 3))
+    asked, frame = np.linalg.eigh(numbers("cov", cov))
+    had = np.einsum("ik,ij,jk->k", frame, law.cov, frame)
+    short_of = had < 0.9025 * asked
+    if short_of.any():
+        degrees = np.degrees(np.sqrt([asked[short_of].max(), had[short_of].max()]))
+        warnings.warn(
+            f"cov: rotations of {degrees[0]:.3g}° are not small: this law has {degrees[1]:.3g}° there; its cov tells all",
+            stacklevel=2,
+        )
+    return law
 
 
 def bingham(precision: ArrayLike, *, order: str = "xyzw") -> AttitudeLaw:

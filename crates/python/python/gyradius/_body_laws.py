@@ -150,7 +150,8 @@ class MassPropertiesLaw(LawOfBodies):
         `mass_delta` is the relative deviation of the mass, `delta` the dispersion of the second moments, `centre_std` (3,) in m.
         """
         region = None if inside is None else json.dumps(inside.form)
-        centre = vector("centre_std", np.broadcast_to(numbers("centre_std", centre_std), (3,)), 3)
+        each = numbers("centre_std", centre_std)
+        centre = vector("centre_std", np.broadcast_to(each, (3,)) if each.ndim == 0 else each, 3)
         deltas = real("mass_delta", mass_delta), real("delta", delta)
         return make(MassPropertiesLaw, "maximum_entropy", ten_of(mean), deltas[0], centre, deltas[1], region)
 

@@ -159,6 +159,10 @@ def _check_region(name: str, region: Any) -> None:
         raise ValueError(f"{name} = {region!r}: it must be a box, an ellipsoid or a hull of gyradius")
 
 
+EXAMPLES = {"mass": "5%", "centre": "5mm", "moments": "10%", "products": "0.1kgm2", "axes": "2deg"}
+"""What may be stated of each."""
+
+
 def _statements(mass: Any, centre: Any, moments: Any, products: Any, axes: Any, sigmas: float) -> _core.StatementsCore:
     def said(name: str, value: Any) -> str | None:
         if value is None:
@@ -169,7 +173,9 @@ def _statements(mass: Any, centre: Any, moments: Any, products: Any, axes: Any, 
             return form(name, {"sigmas": sigmas, **value})
         if isinstance(value, str):
             return form(name, value)
-        raise ValueError(f'{name} = {value!r}: it must be a text with a unit, such as "5%", or a dict as in a file')
+        raise ValueError(
+            f'{name} = {value!r}: it must be a text with a unit, such as "{EXAMPLES[name]}", or a dict as in a file'
+        )
 
     return _core.StatementsCore(
         said("mass", mass),

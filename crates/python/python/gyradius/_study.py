@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import html
 import importlib
 import json
@@ -19,6 +20,9 @@ import numpy as np
 from gyradius import _core
 from gyradius._arrays import text, whole
 from gyradius._simulation import ABOUT, OF_VEHICLES, SOURCE, Progress, Simulation, called_with, described, progress_of
+
+# Threads that are in a study when the program ends, as those of daemons are.
+atexit.register(_core.end_all)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -80,13 +80,21 @@ impl Called {
     }
 }
 
+/// The kinds of NumPy's numbers that are real: flags, whole numbers and floats.
+const REAL: [char; 4] = ['b', 'i', 'u', 'f'];
+
 /// An output with its name.
 fn output(item: &Bound<'_, PyAny>) -> PyResult<(String, f64)> {
     let (name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>) = item.extract()?;
     let name: String = name.extract().map_err(|_| {
         wrong(format!("the name of an output is {}: it must be a text", type_name(&name)))
     })?;
-    let number = value.extract().map_err(|_| {
+    // NumPy makes numbers of complex ones, of texts and of bytes, too.
+    let kind = value.getattr("dtype").and_then(|dtype| dtype.getattr("kind"));
+    let is_real =
+        kind.and_then(|kind| kind.extract::<char>()).map_or(true, |kind| REAL.contains(&kind));
+    let number = is_real.then(|| value.extract().ok()).flatten();
+    let number = number.ok_or_else(|| {
         // A whole number of any length is a number too.
         let problem = if value.is_instance_of::<PyInt>() {
             "a number that a float can hold"

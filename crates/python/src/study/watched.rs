@@ -1,16 +1,16 @@
 //! What takes long, in a thread of its own, while the thread that called looks for interrupts and tells of progress.
 
 use gyradius_study::StudyError;
-use pyo3::{Py, PyAny, PyErr, PyResult, Python};
+use pyo3::{Py, PyAny, PyErr, PyResult, Python, exceptions::PySystemExit, pyfunction};
 use std::{
     panic::resume_unwind,
     sync::{
         Arc,
-        atomic::{AtomicBool, AtomicU64, Ordering},
+        atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering},
         mpsc::{self, RecvTimeoutError},
     },
     thread,
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use super::{called::Called, words::in_keywords};
@@ -18,6 +18,43 @@ use crate::error::refused;
 
 /// How long the calling thread waits between looks.
 const LOOK: Duration = Duration::from_millis(50);
+
+/// How long the end of a program waits for the runs at hand.
+const LAST_WAIT: Duration = Duration::from_secs(10);
+
+/// Whether the program ends.
+static ENDS: AtomicBool = AtomicBool::new(false);
+/// How many are at work.
+static AT_WORK: AtomicUsize = AtomicUsize::new(0);
+
+/// One that is at work, until it is dropped.
+struct AtWork;
+
+impl AtWork {
+    fn new() -> Self {
+        AT_WORK.fetch_add(1, Ordering::SeqCst);
+        Self
+    }
+}
+
+impl Drop for AtWork {
+    fn drop(&mut self) {
+        AT_WORK.fetch_sub(1, Ordering::SeqCst);
+    }
+}
+
+/// Ends what is at work in daemon threads before the interpreter goes: a thread of ours that came back to it afterwards would abort the
+/// program.
+#[pyfunction]
+pub(crate) fn end_all(py: Python<'_>) {
+    ENDS.store(true, Ordering::SeqCst);
+    let until = Instant::now() + LAST_WAIT;
+    py.detach(|| {
+        while AT_WORK.load(Ordering::SeqCst) > 0 && Instant::now() < until {
+            thread::sleep(LOOK / 10);
+        }
+    });
+}
 
 /// Told how many runs are done, of how many.
 type More<'a> = &'a (dyn Fn(u64, u64) + Sync);
@@ -50,6 +87,7 @@ impl Watched {
         called: Option<&Called>,
         work: impl FnOnce(More<'_>) -> Result<T, StudyError> + Send,
     ) -> PyResult<T> {
+        let _at_work = AtWork::new();
         let (done, total) = (AtomicU64::new(0), AtomicU64::new(0));
         let more = |runs: u64, of: u64| {
             total.store(of, Ordering::Relaxed);
@@ -61,6 +99,10 @@ impl Watched {
             let runs = done.load(Ordering::Relaxed);
             let looked = Python::attach(|py| {
                 py.check_signals()?;
+                if ENDS.load(Ordering::SeqCst) {
+                    // Which a thread does not tell of.
+                    return Err(PySystemExit::new_err("the program ends"));
+                }
                 match &self.progress {
                     Some(progress) if runs > told => {
                         progress.call1(py, (runs, total.load(Ordering::Relaxed))).map(|_| ())
