@@ -327,12 +327,36 @@ fn what_cannot_be_drawn_is_said() {
     let scaled = ignored.replace("inertiafromgeom='true'", "settotalmass='5'");
     fs::write(shell.path("scaled.xml"), scaled).unwrap();
     fs::write(shell.path("none.urdf"), robot(&["frame"], "urdf")).unwrap();
+    let sdf = |collision: &str| {
+        format!(
+            "<sdf version='1.9'><model name='m'><link name='b'><inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz>\
+             </inertia></inertial><collision name='c'>{collision}</collision></link></model></sdf>"
+        )
+    };
+    let part = sdf(
+        "<geometry><mesh><uri>two.obj</uri><submesh><name>body</name></submesh></mesh></geometry>",
+    );
+    fs::write(shell.path("part.sdf"), part).unwrap();
+    fs::write(shell.path("empty.sdf"), sdf("")).unwrap();
     for (arguments, expected) in [
         (&["a.urdf", "-n", "1"][..], "nothing is stated"),
         (&["a.urdf", "--mass", "5%"], "-n says"),
         (&["a.urdf", "-n", "1", "--mass", "5"], "a number and its unit"),
         (&["a.urdf", "-n", "1", "--mass", "500%"], "mass"),
         (&["a.urdf", "-n", "1", "--mass", "5%", "--sigmas", "0"], "sigmas"),
+        (
+            &["a.urdf", "-n", "1", "--mass", "-10%"],
+            "'-10%' for '--mass <AMOUNT>': it must be finite and not negative",
+        ),
+        (&["a.urdf", "-n", "1", "--centre", "-5mm"], "'--centre <AMOUNT>'"),
+        (
+            &["part.sdf", "-n", "1", "--mass", "5%", "--inside", "box"],
+            "its mesh \"two.obj\" has a <submesh>, which is not read",
+        ),
+        (
+            &["empty.sdf", "-n", "1", "--mass", "5%", "--inside", "box"],
+            "its <collision> holds no shape",
+        ),
         (&["a.urdf", "-n", "1", "--mass", "5%", "--model", "naive"], "--links"),
         (
             &["a.urdf", "-n", "1", "--mass", "5%", "--links", "leg"],

@@ -111,6 +111,18 @@ fn of_vehicles_the_first_flights_are_judged() {
             assert_eq!(said.contains(more), of_fleet, "{said}");
             assert!(!said.contains("more runs"), "{said}");
         }
+        // A table of these columns that lost the run.
+        let rows: String = (0..450).map(|run| format!("{},{},1.0\n", run / 5, run % 5)).collect();
+        fs::write(scratch.path("lost.csv"), format!("vehicle,flight,nutation_deg\n{rows}"))
+            .unwrap();
+        let lost =
+            scratch.run(&["verdict", "lost.csv", "--require", "nutation_deg <= 5 in 90 % at 90 %"]);
+        assert!(String::from_utf8(lost.stdout).unwrap().contains("450 runs"));
+        let warned = String::from_utf8(lost.stderr).unwrap();
+        assert!(
+            warned.contains("not the column run") && warned.starts_with("warning: "),
+            "{warned}"
+        );
         let block = format!("{name}/runs/proposed/000000000-000000449.parquet");
         fs::copy(scratch.path(&block), scratch.path("alone.parquet")).unwrap();
         let said =

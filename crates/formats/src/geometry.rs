@@ -79,7 +79,8 @@ pub(crate) fn of(
 fn solid(around: Node<'_, '_>, format: Format, angles: &Angles) -> Result<Solid, GeometryProblem> {
     let Frame { centre, rotation, .. } = frame::of(around, format, angles)?;
     let shape = around.child("geometry").and_then(|geometry| geometry.children().next());
-    let shape = shape.ok_or(GeometryProblem::Nothing)?;
+    let empty = || GeometryProblem::Empty { element: around.name().to_owned() };
+    let shape = shape.ok_or_else(empty)?;
     // Attributes in URDF, elements in SDF.
     let list = |name: &'static str, allowed: usize| -> Result<Vec<f64>, GeometryProblem> {
         let numbers = match (shape.numbers(name, allowed), shape.child(name)) {
@@ -110,6 +111,9 @@ fn solid(around: Node<'_, '_>, format: Format, angles: &Angles) -> Result<Solid,
         "mesh" => {
             let uri = shape.child("uri").map(Node::text);
             let path = shape.attribute("filename").or(uri).unwrap_or_default().trim().to_owned();
+            if shape.child("submesh").is_some() {
+                return Err(GeometryProblem::MeshField { mesh: path, field: "a <submesh>" });
+            }
             let is_scaled = shape.attribute("scale").is_some() || shape.child("scale").is_some();
             Shape::Mesh { path, scale: if is_scaled { three("scale")? } else { [1.0; 3] } }
         }
@@ -178,6 +182,12 @@ pub enum GeometryProblem {
     /// There is none.
     #[error("it has neither collision nor visual geometry")]
     Nothing,
+    /// A collision or a visual without a shape.
+    #[error("its <{element}> holds no shape")]
+    Empty {
+        /// The element.
+        element: String,
+    },
     /// A body of MJCF without geoms of its own.
     #[error("it has no geom")]
     NoGeoms,

@@ -36,8 +36,18 @@ pub(crate) fn vertices(uri: &str, robot: &Path) -> Result<Vec<[f64; 3]>, MeshFil
                 .ok_or_else(|| fail("a vertex of it is not three numbers".to_owned()))?
         }
     };
-    if vertices.is_empty() || vertices.iter().flatten().any(|x| !x.is_finite()) {
-        return Err(fail("it has no vertices, or some that are not finite".to_owned()));
+    if vertices.is_empty() {
+        return Err(fail(
+            if extension == "stl" {
+                "it has no lines \"vertex x y z\", and not as many bytes as its number of triangles says"
+            } else {
+                "it has no lines \"v x y z\""
+            }
+            .to_owned(),
+        ));
+    }
+    if vertices.iter().flatten().any(|x| !x.is_finite()) {
+        return Err(fail("a vertex of it is not finite".to_owned()));
     }
     Ok(vertices)
 }
@@ -66,15 +76,15 @@ fn found(uri: &str, robot: &Path) -> Option<PathBuf> {
     candidates.into_iter().find(|path| path.is_file())
 }
 
-/// The corners of the triangles of a binary STL file, if its length is that of one.
+/// The corners of the triangles of a binary STL file, if its length is that of one, or by less than a triangle more.
 fn binary_stl(bytes: &[u8]) -> Option<Vec<[f64; 3]>> {
     let number = u32::from_le_bytes(bytes.get(HEAD - 4..HEAD)?.try_into().ok()?);
     let length = usize::try_from(number).ok()?.checked_mul(TRIANGLE)?.checked_add(HEAD)?;
-    if length != bytes.len() {
+    if bytes.len().checked_sub(length)? >= TRIANGLE {
         return None;
     }
     let mut corners = Vec::new();
-    for triangle in bytes[HEAD..].chunks_exact(TRIANGLE) {
+    for triangle in bytes[HEAD..length].chunks_exact(TRIANGLE) {
         for corner in triangle[12..48].chunks_exact(12) {
             let number = |i: usize| -> Option<f64> {
                 Some(f64::from(f32::from_le_bytes(corner.get(4 * i..4 * i + 4)?.try_into().ok()?)))
@@ -85,13 +95,13 @@ fn binary_stl(bytes: &[u8]) -> Option<Vec<[f64; 3]>> {
     Some(corners)
 }
 
-/// What follows a word at the beginning of a line; nothing if that is not three numbers once.
+/// What follows a word, in large or small letters, at the beginning of a line; nothing if that is not three numbers once.
 fn text(bytes: &[u8], word: &str) -> Option<Vec<[f64; 3]>> {
     let text = String::from_utf8_lossy(bytes);
     let mut vertices = Vec::new();
     for line in text.lines() {
         let mut words = line.split_ascii_whitespace();
-        if words.next() != Some(word) {
+        if !words.next().is_some_and(|first| first.eq_ignore_ascii_case(word)) {
             continue;
         }
         let mut number = || words.next()?.parse::<f64>().ok();
@@ -137,11 +147,20 @@ mod tests {
         }
         let object: String =
             corners.iter().map(|[x, y, z]| format!("v {x} {y} {z} 1.0\nvn 0 0 1\n")).collect();
+        fs::write(package.join("meshes/large.stl"), ascii.to_uppercase()).unwrap();
+        fs::write(package.join("meshes/more.stl"), [&binary[..], &[7; 8]].concat()).unwrap();
+        let mut fewer = binary.clone();
+        fewer[80] = 3;
+        for (name, bytes) in [("cut.stl", &binary[..binary.len() - 1]), ("fewer.stl", &fewer[..])] {
+            fs::write(package.join("meshes").join(name), bytes).unwrap();
+            let error = vertices(&format!("meshes/{name}"), &package.join("arm.urdf")).unwrap_err();
+            assert!(error.to_string().contains("number of triangles"), "{error}");
+        }
         fs::write(package.join("meshes/b.stl"), binary).unwrap();
         fs::write(package.join("meshes/a.STL"), ascii).unwrap();
         fs::write(package.join("meshes/c.obj"), object).unwrap();
         let robot = package.join("urdf/arm.urdf");
-        for name in ["b.stl", "a.STL", "c.obj"] {
+        for name in ["b.stl", "a.STL", "large.stl", "more.stl", "c.obj"] {
             for uri in [
                 format!("../meshes/{name}"),
                 format!("package://arm/meshes/{name}"),

@@ -94,6 +94,15 @@ impl Fleet {
         }
     }
 
+    /// Whether a table looks like one of vehicles and flights whose runs have lost their numbers, so that nobody knows which flights are
+    /// the first.
+    #[must_use]
+    pub fn lost_runs(table: &ForeignTable) -> bool {
+        let has = |column: &Column| table.columns().iter().any(|name| name == column.name());
+        let has_runs = table.columns().iter().any(|name| name == Column::RUN);
+        table.campaign().is_none() && !has_runs && Self::columns().iter().all(has)
+    }
+
     /// What a run has in them.
     pub(crate) fn numbers(self, run: u64) -> [i64; 2] {
         let (vehicle, flight) = self.place(run);

@@ -520,7 +520,7 @@ pub(crate) struct CheckArgs {
 
     /// How far outside the possible an inertia may lie, relative to its trace. Files carry about
     /// six digits, and a flat plate written with six digits lies on the boundary to within that
-    #[arg(long, value_name = "REL", default_value_t = gyradius_formats::TOLERANCE, value_parser = tolerance)]
+    #[arg(long, value_name = "REL", allow_negative_numbers = true, default_value_t = gyradius_formats::TOLERANCE, value_parser = tolerance)]
     pub(crate) tolerance: f64,
 
     /// Products of inertia are positive integrals of xy, not matrix entries, in files that do not

@@ -281,26 +281,30 @@ fn table_of(links: &[LinkSummary]) -> String {
     out + &warnings_of(links)
 }
 
-/// The warnings of all links, those of a kind together: the first one, and which other links have such a one.
+/// The warnings of all links, those of a kind together: the first one, and which other links have such a one, with its number.
 fn warnings_of(links: &[LinkSummary]) -> String {
-    let mut kinds: Vec<(&StatementWarning, Vec<&str>)> = Vec::new();
+    let mut kinds: Vec<(&StatementWarning, Vec<(&str, &StatementWarning)>)> = Vec::new();
     for link in links {
+        let name = link.name.as_str();
         for warning in &link.warnings {
-            let same = |kind: &&mut (&StatementWarning, Vec<&str>)| {
-                discriminant(kind.0) == discriminant(warning)
-            };
-            match kinds.iter_mut().find(same) {
-                Some((_, names)) if names.last() == Some(&link.name.as_str()) => {}
-                Some((_, names)) => names.push(&link.name),
-                None => kinds.push((warning, vec![&link.name])),
+            let mut same =
+                kinds.iter_mut().filter(|kind| discriminant(kind.0) == discriminant(warning));
+            match same.next() {
+                Some((_, names)) if names.last().is_some_and(|last| last.0 == name) => {}
+                Some((_, names)) => names.push((name, warning)),
+                None => kinds.push((warning, vec![(name, warning)])),
             }
         }
     }
     let mut out = String::new();
     for (warning, names) in kinds {
-        out += &format!("warning: {}: {warning}\n", names[0]);
+        out += &format!("warning: {}: {warning}\n", names[0].0);
         if names.len() > 1 {
-            let some: Vec<&str> = names[1..].iter().take(10).copied().collect();
+            let told = |(name, warning): &(&str, &StatementWarning)| match warning.figure() {
+                Some(figure) => format!("{name} ({figure})"),
+                None => (*name).to_owned(),
+            };
+            let some: Vec<String> = names[1..].iter().take(10).map(told).collect();
             let more = if names.len() > 11 {
                 format!(" and {} more", names.len() - 11)
             } else {

@@ -7,7 +7,7 @@ use std::{error::Error, fmt::Write, io, path::Path, process::ExitCode};
 use crate::program::{
     STANDARD_INPUT,
     args::VerdictArgs,
-    output::{print, print_json},
+    output::{print, print_json, say},
 };
 
 /// What the program returns if a requirement is not met, or not decided.
@@ -22,6 +22,12 @@ pub(crate) fn verdict(arguments: &VerdictArgs) -> Result<ExitCode, Box<dyn Error
         (arguments.table.as_path(), ForeignTable::open(&arguments.table)?)
     };
     let table = Fleet::first_flights(table)?;
+    if Fleet::lost_runs(&table) {
+        say(
+            "warning: the table has the columns vehicle and flight, but not the column run of a study's run table: all rows are judged as runs that are \
+             independent of each other; with the column run, the first flight of each vehicle is judged",
+        );
+    }
     let failed = if arguments.leave_out_failed { FailedRuns::LeftOut } else { FailedRuns::Against };
     let requirements: Vec<Requirement> =
         arguments.require.iter().map(|r| r.clone().with_failed_runs(failed)).collect();

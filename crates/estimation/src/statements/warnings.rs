@@ -160,6 +160,31 @@ pub enum MissedBecause {
     Rotations,
 }
 
+impl StatementWarning {
+    /// Its number in a few words, where it has one: for a list of bodies that have the same warning.
+    #[must_use]
+    pub fn figure(&self) -> Option<String> {
+        match *self {
+            Self::FollowsInPart { share, .. } => Some(format!("by {share:.3}")),
+            Self::Missed { entry, stated, implied, .. } => {
+                Some(format!("{}: {} for {}", NAMES[entry], Short(implied), Short(stated)))
+            }
+            Self::Shifted { entry, percent } => Some(format!("{} {percent:+.1} %", NAMES[entry])),
+            Self::Impossible { share, .. } => Some(format!("{:.1} %", 100.0 * share)),
+            Self::Correlated
+            | Self::Flat { .. }
+            | Self::Raised { .. }
+            | Self::Alone { .. }
+            | Self::CentreMissed { .. }
+            | Self::AxesAndProducts { .. }
+            | Self::EqualMoments { .. }
+            | Self::FixedMoments
+            | Self::FixedAxes
+            | Self::Free { .. } => None,
+        }
+    }
+}
+
 impl fmt::Display for StatementWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
