@@ -276,6 +276,11 @@ fn what_cannot_end_is_refused() {
         said.contains("there might have been 500") && runs(&scratch.path("it")) <= 500,
         "{said}"
     );
+    // How often it is looked may be said beside the rule of the scenario.
+    let look = ["--look-every", "50", "--out", "often"];
+    scratch.done(&[&["study", "--scenario", "it.toml"], &look[..]].concat(), 0);
+    let often = fs::read_to_string(scratch.path("often/scenario.toml")).unwrap();
+    assert!(often.contains("look_every = 50\n") && often.contains("rule = \"decided\""), "{often}");
 }
 
 /// Runs that failed are done again once, before the rule is asked.

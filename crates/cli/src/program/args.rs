@@ -219,8 +219,9 @@ pub(crate) struct StudyArgs {
     #[arg(long, value_name = "RULE", conflicts_with = "shard")]
     pub(crate) until: Option<StoppingRule>,
 
-    /// Runs before the first look of --until, and between the first of them [default: 1000, or 256 of a simulator]
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole, requires = "until")]
+    /// Runs before the first look of --until, or of a rule in the scenario, and between the first of them [default: 1000, or 256 of a
+    /// simulator]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole)]
     pub(crate) look_every: Option<u64>,
 
     /// Find what drives the outcome, by so many base runs of each model: Sobol' indices of the groups of inputs, in the report
@@ -321,8 +322,8 @@ pub(crate) struct RareArgs {
     ))]
     pub(crate) sample: Option<u64>,
 
-    /// Give up below this probability
-    #[arg(long, value_name = "P", default_value_t = RareOptions::default().least)]
+    /// Give up where the runs that come nearest are rarer than this and are not the event
+    #[arg(long, value_name = "P", allow_negative_numbers = true, default_value_t = RareOptions::default().least, value_parser = probability)]
     pub(crate) least: f64,
 
     /// Number of threads [default: one for each core]
@@ -830,6 +831,10 @@ fn rows() -> impl TypedValueParser<Value = Rows> {
 /// The help of `--models`.
 fn models() -> String {
     format!("Models [default: all]: {}", ModelKind::ALL.map(ModelKind::name).join(", "))
+}
+
+fn probability(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| "it must be a number between 1e-9 and 1, such as 1e-6".to_owned())
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

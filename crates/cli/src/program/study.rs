@@ -24,9 +24,17 @@ const PATIENCE: Duration = Duration::from_secs(20);
 /// Runs the verb.
 pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
     let scenario = stated(&arguments.scenario)?;
-    let scenario = match &arguments.until {
-        Some(rule) => scenario.with_until(rule.clone(), arguments.look_every)?,
-        None => scenario,
+    let own = scenario.until().map(|until| until.rule().clone());
+    let own = own.filter(|_| arguments.look_every.is_some());
+    let scenario = match (arguments.until.clone().or(own), arguments.look_every) {
+        (Some(rule), look_every) => scenario.with_until(rule, look_every)?,
+        (None, Some(runs)) => {
+            return Err(format!(
+                "--look-every {runs}: it goes with --until, or with a rule in the table until of the scenario, and there is neither"
+            )
+            .into());
+        }
+        (None, None) => scenario,
     };
     let scenario = match arguments.drivers {
         Some(base_runs) => scenario.with_drivers(base_runs)?,

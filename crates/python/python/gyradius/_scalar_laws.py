@@ -26,10 +26,10 @@ class ScalarLaw(Law):
     ----------
     law : str
         ``"normal"``, ``"uniform"``, ``"truncated-normal"``, ``"lognormal"``, ``"triangular"``, ``"beta"``,
-        ``"weibull"`` or ``"samples"``.
+        ``"weibull"``, ``"samples"`` or ``"bernoulli"``.
     **keys
         What the law takes: ``mean``, ``sigma``; ``low``, ``high``; ``mode``; ``alpha``, ``beta``; ``scale``, ``shape``;
-        ``samples``.
+        ``samples``; ``probability``.
 
     Examples
     --------

@@ -55,7 +55,8 @@ def law(
 
     Each statement may also be a dict as in the file of `gyradius model`, such as ``{"percent": 10, "sigmas": 3}``; what a dict says of
     ``sigmas`` comes first. It may not have ``arm_m``: mass centre and inertia are drawn together, and the inertia is about the
-    mass centre as it is drawn.
+    mass centre as it is drawn. So `centre` leaves the inertia as it is. In the law that `gyradius model` writes, whose inertia is about
+    the nominal mass centre, an uncertain mass centre adds to those moments and products of which nothing is stated.
 
     Returns
     -------
