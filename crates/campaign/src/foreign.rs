@@ -34,6 +34,9 @@ pub struct ForeignTable {
     counting: Counting,
 }
 
+/// How files begin that hold tables in other forms, as draws are written.
+const OTHER_FORMS: [(&[u8], &str); 2] = [(b"{\"", "JSON"), (b"\x93NUM", "an array of NumPy")];
+
 #[derive(Clone, Debug)]
 enum Form {
     Parquet,
@@ -93,6 +96,11 @@ impl ForeignTable {
         if is_parquet.is_ok() && start == PARQUET {
             let columns = parquet_columns(path)?;
             return Ok(Self::new(path, files, (Form::Parquet, columns), origin()?));
+        }
+        for (sign, form) in OTHER_FORMS {
+            if start.starts_with(sign) {
+                return Err(failed(format!("it is {form}, and CSV and Parquet are read")));
+            }
         }
         if has_parquet_name(path) {
             return Err(failed("it does not begin as a Parquet file does".to_owned()));

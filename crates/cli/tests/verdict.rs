@@ -214,3 +214,15 @@ fn copies_of_runs_are_refused() {
     }
     same_as_study(&scratch, folder, "it", 0);
 }
+
+/// The other forms in which draws are written are refused by name.
+#[test]
+fn tables_in_other_forms_are_named() {
+    let scratch = Scratch::new();
+    for (extension, form) in [("jsonl", "it is JSON"), ("npy", "it is an array of NumPy")] {
+        let file = format!("draws.{extension}");
+        scratch.done(&["draw", "-n", "3", "-o", &file], 0);
+        let said = scratch.done(&["verdict", &file, "--require", "i11 <= 5 in 90 % at 90 %"], 2);
+        assert!(said.contains(&format!("{file}: {form}, and CSV and Parquet are read")), "{said}");
+    }
+}
