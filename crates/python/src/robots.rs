@@ -49,6 +49,7 @@ pub(crate) fn load_robot(py: Python<'_>, path: PathBuf) -> PyResult<(Vec<Link>, 
     })
 }
 
+/// Why a robot has no links: an `OSError` if the system does not hand out its file, otherwise a refusal.
 fn told(path: &Path, error: &RobotError) -> PyErr {
     if let RobotError::File(file) = error
         && let FileProblem::Io(problem) = file.problem()

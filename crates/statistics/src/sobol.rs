@@ -324,9 +324,7 @@ fn first(group: &Joint<STATISTICS>, confidence: Confidence) -> Option<Estimate> 
     }
     let (least, most) = distance(group, 1.0 - index.value, &index.gradient, confidence)?;
     let (lower, upper) = ((1.0 - most).min(index.value), (1.0 - least).max(index.value));
-    // No index is below 0 or above 1.
-    let (lower, upper) = (lower.min(1.0), upper.max(0.0));
-    Some(Estimate::new(index.value, Interval::ordered(lower, upper, confidence)))
+    Some(reaching(index.value, (lower, upper), confidence))
 }
 
 fn total(group: &Joint<STATISTICS>, confidence: Confidence) -> Option<Estimate> {
@@ -338,8 +336,13 @@ fn total(group: &Joint<STATISTICS>, confidence: Confidence) -> Option<Estimate> 
     [AA, CC].into_iter().for_each(|i| gradient[i] = -value / (2.0 * variance));
     gradient[DD] = 1.0 / (2.0 * variance);
     let (lower, upper) = distance(group, value, &gradient, confidence)?;
-    // No index is above 1. Of a rare flag that one group decides, estimates scatter above it by less than their distance from it.
-    Some(Estimate::new(value, Interval::ordered(lower.min(1.0), upper, confidence)))
+    Some(reaching(value, (lower, upper), confidence))
+}
+
+/// No index is below 0 or above 1, and the interval of an estimate beyond them reaches there: those of a rare flag that one group decides
+/// scatter about a place above 1, by less than that is above it.
+fn reaching(value: f64, (lower, upper): (f64, f64), confidence: Confidence) -> Estimate {
+    Estimate::new(value, Interval::ordered(lower.min(1.0), upper.max(0.0), confidence))
 }
 
 /// Bounds for the distance 1 − r of a correlation from 1, where it is so much and has these derivatives.

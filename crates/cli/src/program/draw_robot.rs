@@ -283,22 +283,24 @@ fn table_of(links: &[LinkSummary]) -> String {
 
 /// The warnings of all links, those of a kind together: the first one, and which other links have such a one, with its number.
 fn warnings_of(links: &[LinkSummary]) -> String {
-    let mut kinds: Vec<(&StatementWarning, Vec<(&str, &StatementWarning)>)> = Vec::new();
+    let mut kinds: Vec<Vec<(&str, &StatementWarning)>> = Vec::new();
     for link in links {
         let name = link.name.as_str();
         for warning in &link.warnings {
-            let mut same =
-                kinds.iter_mut().filter(|kind| discriminant(kind.0) == discriminant(warning));
-            match same.next() {
-                Some((_, names)) if names.last().is_some_and(|last| last.0 == name) => {}
-                Some((_, names)) => names.push((name, warning)),
-                None => kinds.push((warning, vec![(name, warning)])),
+            let is_same = |kind: &[(&str, &StatementWarning)]| {
+                discriminant(kind[0].1) == discriminant(warning)
+            };
+            match kinds.iter_mut().find(|kind| is_same(kind)) {
+                Some(names) if names.last().is_some_and(|last| last.0 == name) => {}
+                Some(names) => names.push((name, warning)),
+                None => kinds.push(vec![(name, warning)]),
             }
         }
     }
     let mut out = String::new();
-    for (warning, names) in kinds {
-        out += &format!("warning: {}: {warning}\n", names[0].0);
+    for names in kinds {
+        let (first, warning) = names[0];
+        out += &format!("warning: {first}: {warning}\n");
         if names.len() > 1 {
             let told = |(name, warning): &(&str, &StatementWarning)| match warning.figure() {
                 Some(figure) => format!("{name} ({figure})"),

@@ -24,15 +24,14 @@ const PATIENCE: Duration = Duration::from_secs(20);
 /// Runs the verb.
 pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
     let scenario = stated(&arguments.scenario)?;
-    let own = scenario.until().map(|until| until.rule().clone());
-    let own = own.filter(|_| arguments.look_every.is_some());
-    let scenario = match (arguments.until.clone().or(own), arguments.look_every) {
-        (Some(rule), look_every) => scenario.with_until(rule, look_every)?,
+    let scenario = match (&arguments.until, arguments.look_every) {
+        (Some(rule), look_every) => scenario.with_until(rule.clone(), look_every)?,
         (None, Some(runs)) => {
-            return Err(format!(
-                "--look-every {runs}: it goes with --until, or with a rule in the table until of the scenario, and there is neither"
-            )
-            .into());
+            let own = scenario.until().map(|until| until.rule().clone());
+            let rule = own.ok_or_else(|| {
+                format!("--look-every {runs}: it goes with --until, or with a rule in the table until of the scenario, and there is neither")
+            })?;
+            scenario.with_until(rule, Some(runs))?
         }
         (None, None) => scenario,
     };

@@ -94,11 +94,6 @@ impl Task {
         (ZERO * self.trace).powi(2)
     }
 
-    /// Whether the axes are as stated wherever the search goes.
-    fn has_axes_as_stated(&self) -> bool {
-        self.axes.is_some() && self.products == Asked::Nothing
-    }
-
     /// What is asked of each entry at a point, and what it has there.
     pub(super) fn compare(&self, at: &Point) -> Vec<Compared> {
         let k = self.body.second_moments(&at.scatter);
@@ -118,6 +113,8 @@ impl Task {
         let relative =
             self.mass.map_or([0.0; 2], |(relative, most)| [at.follows, most].map(|x| relative * x));
         let [by_mass, most_by_mass] = relative.map(|x| x * x);
+        // Wherever the search goes: only products open the turns.
+        let axes_are_as_stated = self.axes.is_some() && self.products == Asked::Nothing;
         let both = self.moments.is_stated() && self.products.is_stated();
         let any = self.moments.is_stated() || self.products.is_stated();
         let mut compared = Vec::new();
@@ -130,27 +127,27 @@ impl Task {
             };
             let with_mass = |e: usize, v: f64| with(by_mass, e, v);
             for e in first_entry..first_entry + 3 {
-                let mut found_here = with_mass(e, found[e]);
-                let (wanted, counts) = match asked {
+                let (wanted, found, counts) = match asked {
                     Asked::Nothing => continue,
                     Asked::Stated(deviations) => {
                         let first = if both && e < 3 { MOMENTS_FIRST } else { 1.0 };
-                        let mut wanted = deviations[e - first_entry].powi(2);
+                        let stated = deviations[e - first_entry].powi(2);
                         // Axes and mass are stated, too: where they alone are more, there is no less, and the
                         // inertia follows the mass no less for it.
                         let given = with(most_by_mass, e, (found[e] - by_roots[e]).max(0.0));
-                        if e < 3 && self.has_axes_as_stated() && given > wanted {
-                            found_here = with(most_by_mass, e, found[e]);
-                            wanted = if wanted > 0.0 { given } else { wanted };
+                        if e < 3 && axes_are_as_stated && given > stated {
+                            let wanted = if stated > 0.0 { given } else { stated };
+                            (wanted, with(most_by_mass, e, found[e]), first)
+                        } else {
+                            (stated, with_mass(e, found[e]), first)
                         }
-                        (wanted, first)
                     }
                     Asked::Added(variances) => {
                         let last = if any { ADDED_LAST } else { 1.0 };
-                        (with_mass(e, rest[e] + variances[e - first_entry]), last)
+                        let wanted = with_mass(e, rest[e] + variances[e - first_entry]);
+                        (wanted, with_mass(e, found[e]), last)
                     }
                 };
-                let found = found_here;
                 // Nor may roots that are open for the mass centre alone scatter for the products.
                 let is_beyond = e < 3 && !asked.is_stated() && found > wanted;
                 let counts =

@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from gyradius._rng import RNG
 
 
+SMALL = np.radians(10)
+"""Rotations that are smaller in all, rad, have the covariance that is asked for, to a percent."""
+
+
 class AttitudeLaw(Law):
     """A law of attitudes: made by `uniform_attitude`, `radially_constrained_gaussian`, `small_rotations`, `bingham`,
     `fisher_bingham`, `fixed_attitude` and `about_axis`.
@@ -132,9 +136,12 @@ def small_rotations(mean: ArrayLike, cov: ArrayLike, *, order: str = "xyzw") -> 
         A deviation of the rotations is more than 5 % below what is asked for.
     """
     law = make(AttitudeLaw, "of_small_rotations", one_attitude("mean", mean, order), nested("cov", cov, 3))
-    asked, frame = np.linalg.eigh(numbers("cov", cov))
+    matrix = numbers("cov", cov)
+    if matrix.trace() < SMALL**2:
+        return law
+    asked, frame = np.linalg.eigh(matrix)
     had = np.einsum("ik,ij,jk->k", frame, law.cov, frame)
-    short_of = had < 0.9025 * asked
+    short_of = had < 0.95**2 * asked
     if short_of.any():
         degrees = np.degrees(np.sqrt([asked[short_of].max(), had[short_of].max()]))
         warnings.warn(

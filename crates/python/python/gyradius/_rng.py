@@ -93,9 +93,8 @@ def _places(index: ArrayLike) -> NDArray[np.uint64]:
     if array.dtype in (np.float64, np.object_) and not isinstance(index, np.ndarray):
         exact = np.asarray(index, dtype=object)
         if exact.size and all(isinstance(one, (int, np.integer)) for one in exact.flat):
-            outside = [one for one in exact.flat if not 0 <= one < 2**64]
-            if outside:
-                raise ValueError(f"index: {outside[0]}: it must be from 0 to 2**64 - 1")
+            for one in exact.flat:
+                whole("index", one, 2**64 - 1)
             array = exact.astype(np.uint64)
     if not np.issubdtype(array.dtype, np.integer):
         if array.size:
