@@ -14,8 +14,10 @@ use std::f64::consts::TAU;
 const TOLERANCE: f64 = 1e-5;
 const MAX_BOXES: usize = 100_000;
 const NODES: usize = 33;
-/// 1, and the squares of the three scaled coordinates: the widths of the law.
-const INTEGRALS: usize = 4;
+/// 1, and the squares of the three scaled coordinates: the widths of the law. Last, 1 without the weight.
+const INTEGRALS: usize = 5;
+/// How far the share of the half may be from what the law knows of it, if no part of the law was missed.
+const MISSED: f64 = 1e-6;
 
 /// A cubature fitted to one law with a weight.
 pub(super) struct HalfSphere<W> {
@@ -99,9 +101,19 @@ impl<W: Fn(&[f64; 4]) -> f64> HalfSphere<W> {
         }
     }
 
-    /// The share of the law that the cubature finds in the half, if the weight is one.
-    pub(super) fn share_of(&self, law: &RadiallyConstrainedGaussian) -> f64 {
-        let total: f64 = self.boxes.iter().map(|cell| cell.values[0]).sum();
+    /// The mean of the weight under the law, where it is zero in the far half.
+    pub(super) fn mean_of_weight(&self, law: &RadiallyConstrainedGaussian) -> f64 {
+        self.integral(law, 0)
+    }
+
+    /// Whether the whole of the law in the half was found: a thin ridge that winds to the edge can escape the boxes.
+    pub(super) fn is_whole(&self, law: &RadiallyConstrainedGaussian) -> bool {
+        (self.integral(law, INTEGRALS - 1) - (1.0 - law.far_half_share())).abs() < MISSED
+    }
+
+    /// One of the integrals, over that of the law on the whole sphere.
+    fn integral(&self, law: &RadiallyConstrainedGaussian, which: usize) -> f64 {
+        let total: f64 = self.boxes.iter().map(|cell| cell.values[which]).sum();
         libm::exp(libm::log(total * self.chart.scale.determinant().abs()) - law.ln_normaliser())
     }
 
@@ -125,13 +137,15 @@ impl<W: Fn(&[f64; 4]) -> f64> HalfSphere<W> {
         let volume: f64 = half.iter().product();
         for (n, node) in rule().iter().enumerate() {
             let (share, x, w) = self.chart.node(&cell, &node.at);
-            let density = volume * share * (self.weight)(&x);
-            densities[n] = density;
+            let weight = (self.weight)(&x);
+            let plain = volume * share;
+            densities[n] = plain * weight;
             let square = 1.0 + w.norm_squared();
-            let functions = [1.0, w.x * w.x / square, w.y * w.y / square, w.z * w.z / square];
+            let widths = [w.x, w.y, w.z].map(|w| weight * w * w / square);
+            let functions = [weight, widths[0], widths[1], widths[2], 1.0];
             for (i, function) in functions.iter().enumerate() {
-                cell.values[i] += node.fine * density * function;
-                coarse[i] += node.coarse * density * function;
+                cell.values[i] += node.fine * plain * function;
+                coarse[i] += node.coarse * plain * function;
             }
         }
         cell.errors = std::array::from_fn(|i| (cell.values[i] - coarse[i]).abs());
@@ -276,7 +290,8 @@ mod tests {
             let covariance = Matrix4::from_diagonal(&Vector4::from(variances));
             let law = RadiallyConstrainedGaussian::new(mean, covariance).unwrap();
             let half = HalfSphere::new(&law, |_| 1.0);
-            let (share, expected) = (half.share_of(&law), 1.0 - law.far_half_share());
+            let (share, expected) = (half.mean_of_weight(&law), 1.0 - law.far_half_share());
+            assert!(half.is_whole(&law));
             assert!((share - expected).abs() < 2e-8, "{variances:?}: {share} {expected}");
             assert!(half.nodes().all(|(_, q)| law.in_mean_half(&q)));
         }

@@ -1,8 +1,7 @@
 //! The moments of a law of principal axes that the moments of the entries are made of.
 
 use gyradius_attitude::{
-    AboutAxis, AngularQuadrature, FisherBingham, MeanHalf, RadiallyConstrainedGaussian,
-    UniformAttitude,
+    AboutAxis, FisherBingham, MeanHalf, RadiallyConstrainedGaussian, UniformAttitude,
 };
 use nalgebra::{Matrix3, SMatrix, UnitQuaternion};
 use std::f64::consts::LN_2;
@@ -10,7 +9,8 @@ use std::f64::consts::LN_2;
 use super::LN_PI_SQUARED;
 use super::half_sphere::HalfSphere;
 use super::jacobian_twice::second_jacobian;
-use crate::entry_moments::{ENTRIES, Expectation, expected_forms};
+use super::whole_sphere::WholeSphere;
+use crate::entry_moments::{ENTRIES, expected_forms};
 use crate::{EntryMoments, FixedAttitude, JacobianTwice, SecondMomentStatistics};
 
 /// A law of attitudes under which the mean and covariance of the entries of an inertia matrix can be
@@ -148,7 +148,7 @@ impl AttitudeMoments for FixedAttitude {
 /// By adaptive cubature over the half sphere, to about 1e-7 of the largest covariance; where the far
 /// half holds less than 1e-14 of the law, that of the whole to machine precision. A thin ridge of the
 /// law that winds to the edge of the half can escape the cubature, which shows in the share of the
-/// half: then by quadrature over the angles of the whole sphere, to about 1e-3.
+/// half: then by quadrature over the angles of the whole sphere, to better than 1e-2.
 impl AttitudeMoments for MeanHalf {
     fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
         let far = self.whole().far_half_share();
@@ -156,10 +156,10 @@ impl AttitudeMoments for MeanHalf {
             return self.whole().entry_moments(k);
         }
         let half = HalfSphere::new(self.whole(), |_| 1.0);
-        if (half.share_of(self.whole()) - (1.0 - far)).abs() < 1e-6 {
+        if half.is_whole(self.whole()) {
             return EntryMoments::by_quadrature(k, half.nodes());
         }
-        EntryMoments::by_expectation(k, &Kept(self.whole(), self.whole().by_quadrature()))
+        EntryMoments::by_expectation(k, &WholeSphere::new(self.whole(), |_| 1.0))
     }
 
     fn ln_density_of_attitude(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
@@ -171,26 +171,15 @@ impl AttitudeMoments for MeanHalf {
     }
 }
 
-/// The quadrature over the whole sphere, kept to the half.
-struct Kept<'a>(&'a RadiallyConstrainedGaussian, AngularQuadrature);
-
-impl Expectation for Kept<'_> {
-    fn expect<const N: usize>(
-        &self,
-        mut functions: impl FnMut(&UnitQuaternion<f64>) -> [f64; N],
-    ) -> [f64; N] {
-        let Self(law, quadrature) = self;
-        let inside = |q: &UnitQuaternion<f64>| if law.in_mean_half(q) { 1.0 } else { 0.0 };
-        let [share] = quadrature.expect(|q| [inside(q)]);
-        quadrature.expect(|q| functions(q).map(|x| x * inside(q))).map(|x| x / share)
-    }
-}
-
 /// By adaptive cubature over the half sphere, to about 1e-5 of the largest covariance: the weight has
-/// edges.
+/// edges. Where a ridge escapes it, as for [`MeanHalf`].
 impl AttitudeMoments for JacobianTwice {
     fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
-        EntryMoments::by_quadrature(k, HalfSphere::new(self.once(), second_jacobian).nodes())
+        let half = HalfSphere::new(self.once(), second_jacobian);
+        if half.is_whole(self.once()) {
+            return EntryMoments::by_quadrature(k, half.nodes());
+        }
+        EntryMoments::by_expectation(k, &WholeSphere::new(self.once(), second_jacobian))
     }
 
     fn ln_density_of_attitude(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
@@ -207,19 +196,6 @@ mod tests {
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
     use rand_distr::Distribution;
 
-    /// The whole sphere's quadrature with any weight.
-    struct Weighted<W>(AngularQuadrature, W);
-
-    impl<W: Fn(&UnitQuaternion<f64>) -> f64> Expectation for Weighted<W> {
-        fn expect<const N: usize>(
-            &self,
-            mut functions: impl FnMut(&UnitQuaternion<f64>) -> [f64; N],
-        ) -> [f64; N] {
-            let [total] = self.0.expect(|q| [(self.1)(q)]);
-            self.0.expect(|q| functions(q).map(|x| x * (self.1)(q))).map(|x| x / total)
-        }
-    }
-
     /// On the paper's example nothing lies at the edge of the half, and the quadrature over the angles
     /// of the whole sphere, the far half left out, is another way to the same moments.
     #[test]
@@ -230,16 +206,15 @@ mod tests {
         let law = RadiallyConstrainedGaussian::new(mean, covariance).unwrap();
         let k =
             SecondMomentStatistics::independent([1000.0, 2000.0, 3000.0], [500.0, 700.0, 900.0]);
-        let inside = |q: &UnitQuaternion<f64>| f64::from(u8::from(law.in_mean_half(q)));
-        let jacobian = |q: &UnitQuaternion<f64>| {
-            let planar = q.i * q.i + q.j * q.j;
-            ((planar + q.k * q.k) * planar).sqrt()
+        let jacobian = |x: &[f64; 4]| {
+            let planar = x[0] * x[0] + x[1] * x[1];
+            ((planar + x[2] * x[2]) * planar).sqrt()
         };
 
         let half = MeanHalf::new(law.clone()).entry_moments(&k);
         let twice = JacobianTwice::new(law.clone()).unwrap().entry_moments(&k);
-        let plain = Weighted(law.by_quadrature(), inside);
-        let weighted = Weighted(law.by_quadrature(), |q: &_| inside(q) * jacobian(q));
+        let plain = WholeSphere::new(&law, |_| 1.0);
+        let weighted = WholeSphere::new(&law, jacobian);
         for (found, expected, allowed) in [
             (half, EntryMoments::by_expectation(&k, &plain), 1e-7),
             (twice, EntryMoments::by_expectation(&k, &weighted), 1e-5),

@@ -1,6 +1,6 @@
 //! Laws of independent scores, fitted to weighted runs.
 
-use super::score_law::{Single, Tail, log_ratio, log_sum};
+use super::score_law::{LogParts, Single, Tail, log_sum};
 
 /// Bounds of a standard deviation.
 const NARROW: f64 = 0.3;
@@ -38,16 +38,15 @@ pub(super) fn fit(
 ) -> Option<Vec<(f64, Singles)>> {
     let weights: Vec<f64> = elites.iter().map(|elite| elite.weight).collect();
     let (raw, cautious, _) = singles(elites, start, &weights)?;
-    let kept = (before.len() > 1).then(|| {
-        maximised(elites, start, elites.iter().map(|elite| shares(elite, before)).collect())
-    });
+    let kept = (before.len() > 1).then(|| maximised(elites, start, shares(elites, before)));
     let parts = split(elites, start, kept.flatten().unwrap_or_else(|| vec![(1.0, raw)]));
     let mut found = vec![(1.0, cautious)];
     if parts.len() > 1 {
         found.clear();
         // What is drawn from is as cautious as a single law.
+        let near = shares(elites, &parts);
         for (part, (share, _)) in parts.iter().enumerate() {
-            let mine = elites.iter().map(|elite| elite.weight * shares(elite, &parts)[part]);
+            let mine = elites.iter().zip(&near).map(|(elite, near)| elite.weight * near[part]);
             found.push((*share, singles(elites, start, &mine.collect::<Vec<_>>())?.1));
         }
     }
@@ -76,13 +75,14 @@ fn split(
     let all: f64 = elites.iter().map(|elite| elite.weight).sum();
     let squares: f64 = elites.iter().map(|elite| elite.weight * elite.weight).sum();
     let likelihood = |parts: &[(f64, Singles)]| -> f64 {
-        let of = |elite: &Elite<'_>| elite.weight * log_sum(&logs(elite, parts));
+        let logs = logs(parts);
+        let of = |elite: &Elite<'_>| elite.weight * log_sum(&logs.at(elite.scores));
         elites.iter().map(of).sum::<f64>() / all
     };
     // For each run of equal weight.
     let worth = WORTH * (2 * start.len() + 1) as f64 * squares / (all * all);
     while parts.len() < MOST_PARTS {
-        let near: Vec<Vec<f64>> = elites.iter().map(|elite| shares(elite, &parts)).collect();
+        let near = shares(elites, &parts);
         let divided = (0..parts.len()).filter_map(|part| {
             let sides = halves(elites, &near, part, &parts[part].1)?;
             let near = near.iter().zip(sides).map(|(near, side)| {
@@ -115,17 +115,15 @@ fn singles(
         return None;
     }
     let count = all * all / squares;
-    let mean_of = |of: &dyn Fn(&Elite<'_>) -> f64| {
-        elites.iter().zip(weights).map(|(elite, weight)| weight * of(elite)).sum::<f64>() / all
-    };
     let likeliest = |(j, start): (usize, &Single)| match *start {
         Single::Normal { .. } => {
-            let mean = mean_of(&|elite| elite.scores[j]);
-            let variance = mean_of(&|elite| (elite.scores[j] - mean) * (elite.scores[j] - mean));
+            let mean = mean_of(elites, weights, |scores| scores[j]);
+            let variance =
+                mean_of(elites, weights, |scores| (scores[j] - mean) * (scores[j] - mean));
             Single::Normal { mean, deviation: variance.sqrt().clamp(NARROW, WIDE) }
         }
         Single::Tail(tail) => {
-            let share = mean_of(&|elite| f64::from(u8::from(tail.has(elite.scores[j]))));
+            let share = mean_of(elites, weights, |scores| f64::from(u8::from(tail.has(scores[j]))));
             Single::Tail(Tail { chance: share.clamp(tail.own, tail.own.max(OFTEN)), ..tail })
         }
     };
@@ -153,6 +151,16 @@ fn singles(
     });
     let cautious = cautious.collect();
     Some((raw, cautious, count))
+}
+
+/// The weighted mean of a function of the scores.
+fn mean_of(elites: &[Elite<'_>], weights: &[f64], of: impl Fn(&[f64]) -> f64) -> f64 {
+    let (mut sum, mut all) = (0.0, 0.0);
+    for (elite, weight) in elites.iter().zip(weights) {
+        sum += weight * of(elite.scores);
+        all += weight;
+    }
+    sum / all
 }
 
 /// For each run 1 or 0: on which side it is, across the direction in which those near a part scatter most about its middle.
@@ -215,21 +223,23 @@ fn maximised(
             }
             parts.push((share, law));
         }
-        near = elites.iter().map(|elite| shares(elite, &parts)).collect();
+        near = shares(elites, &parts);
     }
     Some(parts)
 }
 
-/// The logarithm of what each part has at a run, but for a constant.
-fn logs(elite: &Elite<'_>, parts: &[(f64, Singles)]) -> Vec<f64> {
-    let of =
-        |(share, singles): &(f64, Singles)| libm::log(*share) + log_ratio(singles, elite.scores);
-    parts.iter().map(of).collect()
+/// The logarithms of what each part has at a run, but for a constant.
+fn logs(parts: &[(f64, Singles)]) -> LogParts {
+    LogParts::new(parts.iter().map(|(share, singles)| (*share, singles.as_slice())))
 }
 
-/// With which probability a run is of each part.
-fn shares(elite: &Elite<'_>, parts: &[(f64, Singles)]) -> Vec<f64> {
-    let logs = logs(elite, parts);
-    let all = log_sum(&logs);
-    logs.into_iter().map(|log| libm::exp(log - all)).collect()
+/// For each run with which probability it is of each part.
+fn shares(elites: &[Elite<'_>], parts: &[(f64, Singles)]) -> Vec<Vec<f64>> {
+    let logs = logs(parts);
+    let of = |elite: &Elite<'_>| {
+        let logs = logs.at(elite.scores);
+        let all = log_sum(&logs);
+        logs.into_iter().map(|log| libm::exp(log - all)).collect()
+    };
+    elites.iter().map(of).collect()
 }

@@ -106,17 +106,60 @@ impl Single {
         }
     }
 
-    /// The logarithm of the density over that of the own law.
-    pub(super) fn log_ratio(self, z: f64) -> f64 {
+    /// The logarithm of its density over that of the own law, to be asked at many scores.
+    fn log_ratio(self) -> LogRatio {
         match self {
             Self::Normal { mean, deviation } => {
-                let standard = (z - mean) / deviation;
-                0.5 * (z * z - standard * standard) - libm::log(deviation)
+                LogRatio::Normal { mean, deviation, log: libm::log(deviation) }
             }
-            Self::Tail(tail) if tail.has(z) => libm::log(tail.chance / tail.own),
-            // NaN stays NaN.
-            Self::Tail(tail) => libm::log((1.0 - tail.chance) / (1.0 - tail.own)) + 0.0 * z,
+            Self::Tail(tail) => LogRatio::Tail {
+                within: libm::log(tail.chance / tail.own),
+                without: libm::log((1.0 - tail.chance) / (1.0 - tail.own)),
+                tail,
+            },
         }
+    }
+}
+
+/// The logarithm of the density of one score over that of its own law. Its logarithms are taken once for all scores.
+enum LogRatio {
+    Normal { mean: f64, deviation: f64, log: f64 },
+    Tail { tail: Tail, within: f64, without: f64 },
+}
+
+impl LogRatio {
+    fn at(&self, z: f64) -> f64 {
+        match self {
+            Self::Normal { mean, deviation, log } => {
+                let standard = (z - mean) / deviation;
+                0.5 * (z * z - standard * standard) - log
+            }
+            Self::Tail { tail, within, .. } if tail.has(z) => *within,
+            // NaN stays NaN.
+            Self::Tail { without, .. } => without + 0.0 * z,
+        }
+    }
+}
+
+/// The logarithms of what the parts of a mixture have at scores: of the share, and of the density over that of the own law.
+pub(super) struct LogParts(Vec<(f64, Vec<LogRatio>)>);
+
+impl LogParts {
+    /// Of parts with their shares.
+    pub(super) fn new<'a>(parts: impl Iterator<Item = (f64, &'a [Single])>) -> Self {
+        let part = |(share, singles): (f64, &[Single])| {
+            (libm::log(share), singles.iter().map(|single| single.log_ratio()).collect())
+        };
+        Self(parts.map(part).collect())
+    }
+
+    /// At some scores, for each part.
+    pub(super) fn at(&self, scores: &[f64]) -> Vec<f64> {
+        let ratio = |(single, z): (&LogRatio, &f64)| single.at(*z);
+        let part = |(share, singles): &(f64, Vec<LogRatio>)| {
+            share + singles.iter().zip(scores).map(ratio).sum::<f64>()
+        };
+        self.0.iter().map(part).collect()
     }
 }
 
@@ -202,15 +245,9 @@ impl ScoreLaw {
         if self.is_own() {
             return 0.0;
         }
-        let logs = self.parts.iter();
-        let logs = logs.map(|part| libm::log(part.share) + log_ratio(&part.singles, scores));
-        -log_sum(&logs.collect::<Vec<_>>())
+        let parts = self.parts.iter().map(|part| (part.share, part.singles.as_slice()));
+        -log_sum(&LogParts::new(parts).at(scores))
     }
-}
-
-/// The logarithm of the density of scores over that under their own law.
-pub(super) fn log_ratio(singles: &[Single], scores: &[f64]) -> f64 {
-    singles.iter().zip(scores).map(|(single, z)| single.log_ratio(*z)).sum()
 }
 
 /// The logarithm of a sum of exponentials.
