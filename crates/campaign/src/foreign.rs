@@ -59,7 +59,8 @@ impl ForeignTable {
     pub fn open(path: &Path) -> Result<Self, ForeignError> {
         let failed = |problem: String| ForeignError { path: path.to_owned(), problem };
         let unread = |error: io::Error| failed(error.to_string());
-        let found = fs::metadata(path).map_err(unread)?;
+        let found = fs::metadata(path);
+        let found = found.map_err(|error| failed(Origin::why_none(path, error.to_string())))?;
         let origin = || Origin::of(path).map_err(unread);
         if found.is_dir() {
             let (mut files, mut folders) = (Vec::new(), Vec::new());
@@ -81,8 +82,12 @@ impl ForeignTable {
                     "beside its files it has the folder {below} with Parquet files, which would not be read: judge one folder at a time, or put all files into one"
                 )));
             }
-            let first =
-                files.first().ok_or_else(|| failed("it has no .parquet file; the run tables of a study are in runs/ below its folder, a folder for each model".to_owned()))?;
+            let none = || {
+                let problem = "it has no .parquet file; the run tables of a study are in runs/ below its folder, a folder for \
+                               each model";
+                failed(Origin::why_none(path, problem.to_owned()))
+            };
+            let first = files.first().ok_or_else(none)?;
             let columns = parquet_columns(first)?;
             return Ok(Self::new(path, files, (Form::Parquet, columns), origin()?));
         }

@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, fmt};
 
+use crate::hash::sha256;
+
 /// Everything that the runs of a campaign depend on, but how many there are: by field, as text.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
@@ -24,6 +26,14 @@ impl Identity {
     #[must_use]
     pub fn new(fields: impl IntoIterator<Item = (String, String)>) -> Self {
         Self(fields.into_iter().collect())
+    }
+
+    /// A word for it: two campaigns that differ have different ones.
+    pub(crate) fn word(&self) -> String {
+        let fields = self.0.iter().flat_map(|(field, value)| [field, value]);
+        // No field runs into the next one.
+        let text: String = fields.map(|text| format!("{}:{text}", text.len())).collect();
+        sha256(text)[..16].to_owned()
     }
 
     /// Where this campaign differs from one that is there.
@@ -70,13 +80,16 @@ mod tests {
         ) {
             let here = Identity(fields.clone());
             prop_assert_eq!(here.difference(&here), None);
+            prop_assert_eq!(here.word(), here.clone().word());
             let name = fields.keys().nth(at.index(fields.len())).unwrap().clone();
             let mut changed = fields.clone();
             changed.insert(name.clone(), other.clone());
             let mut gone = fields;
             gone.remove(&name);
             for (there, expected) in [(changed, Some(other)), (gone, None)] {
-                let difference = here.difference(&Identity(there)).unwrap();
+                let there = Identity(there);
+                prop_assert_ne!(here.word(), there.word());
+                let difference = here.difference(&there).unwrap();
                 prop_assert_eq!(&difference.field, &name);
                 prop_assert_eq!(&difference.there, &expected);
                 prop_assert_eq!(difference.here.as_ref(), here.0.get(&name));

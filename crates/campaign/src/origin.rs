@@ -36,6 +36,21 @@ impl Origin {
         self.blocks.iter().any(|block| Path::new(&block.name()).file_name() == file.file_name())
     }
 
+    /// Why there is no run table at a place: what was found, and, where a study that it is in kept no rows, or few, that.
+    pub(crate) fn why_none(table: &Path, found: String) -> String {
+        let studies = table.ancestors().filter(|folder| !folder.as_os_str().is_empty()).take(4);
+        let mut studies = studies.filter_map(|folder| Some((folder, Manifest::read(folder).ok()?)));
+        let study = studies.next().map(|(folder, manifest)| (manifest.kept().rows(), folder));
+        match study.filter(|(rows, _)| !rows.is_all()) {
+            Some((rows, folder)) => format!(
+                "{found}; the study in {} kept rows = \"{}\" of its run tables, and its report and summary.json hold its verdicts",
+                folder.display(),
+                rows.name()
+            ),
+            None => found,
+        }
+    }
+
     /// Of a file in `runs/MODEL` of a campaign's folder, or of that folder of the model; none elsewhere.
     pub(crate) fn of(table: &Path) -> io::Result<Option<Self>> {
         let whole = fs::canonicalize(table)?;

@@ -155,7 +155,7 @@ pub use {nalgebra, rand, rand_distr};
 #[cfg(feature = "program")]
 mod program;
 #[cfg(feature = "program")]
-pub use program::run;
+pub use program::{run, run_as};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

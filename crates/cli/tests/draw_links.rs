@@ -27,8 +27,9 @@ fn defaults_and_second_inertias_are_told() {
     let robots = run(&["-o", "robots"]);
     for told in [&table.stderr, &robots.stdout].map(|said| String::from_utf8_lossy(said)) {
         for line in [
-            "note: a: the file does not state inertia: its draws are about the defaults of SDF",
-            "note: c: the file does not state mass, inertia: ",
+            "note: a: the file does not state inertia: its draws are about the defaults of SDF, moments of inertia of 1 kg·m²",
+            "note: c: the file does not state mass, inertia: its draws are about the defaults of SDF, a mass of 1 kg and moments \
+             of inertia of 1 kg·m²",
             "left as it is: b: it is a second <inertial> of its link",
         ] {
             assert!(told.lines().any(|said| said.starts_with(line)), "{line}\n{told}");

@@ -373,7 +373,10 @@ fn what_cannot_be_drawn_is_said() {
         (&["none.urdf", "-n", "1", "--mass", "5%"], "no link of this URDF file"),
         (&["gone.urdf", "-n", "1", "--mass", "5%"], "cannot be read"),
         (&["-n", "1", "--mass", "5%"], "are for robots"),
-        (&["a.urdf", "-n", "1", "--mass", "5%", "-o", "a.xlsx"], "the extension tells no table"),
+        (
+            &["a.urdf", "-n", "1", "--mass", "5%", "-o", "a.xlsx"],
+            "a folder of this name must be written as a.xlsx/",
+        ),
     ] {
         let message = refused(&shell, arguments);
         assert!(message.contains(expected), "{arguments:?}: {message}");

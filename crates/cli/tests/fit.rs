@@ -379,3 +379,26 @@ fn bad_statements_are_refused_by_name() {
     shell.write("binary.toml", "\u{0}\u{1}");
     shell.refused(&["model", "binary.toml"]);
 }
+
+/// A row that sums up others, in a column of names or in one that is not read, is no sample.
+#[test]
+fn totals_and_averages_are_no_samples() {
+    for (heading, word) in [("name", "Total"), ("id", "AVERAGE"), ("run", "std dev")] {
+        let mut text = format!("{heading},ixx,iyy,izz\n");
+        for i in 0..40 {
+            text += &format!(
+                "{i},{},{},{}\n",
+                10.0 + f64::from(i % 7),
+                12.0 + f64::from(i % 5),
+                14.0 + f64::from(i % 3)
+            );
+        }
+        let shell = Shell::new();
+        shell.write("plain.csv", &text);
+        shell.write("with.csv", &format!("{text}{word},13,14,15\n"));
+        let (code, _, _) = shell.run(&["fit", "plain.csv"]);
+        assert!(code < 2, "{heading}");
+        let said = shell.refused(&["fit", "with.csv"]);
+        assert!(said.contains("with.csv:42") && said.contains(word), "{said}");
+    }
+}

@@ -33,6 +33,40 @@ impl Scratch {
     }
 }
 
+/// Every row of the table of shapes in the documentation is read, with its sizes.
+#[test]
+fn the_documented_shapes_are_read() {
+    let page = include_str!("../../../docs/rollup.md");
+    let table = page.split("### Shapes").nth(1).unwrap().split("## ").next().unwrap();
+    let words =
+        |cell: &str| cell.split('`').skip(1).step_by(2).map(str::to_owned).collect::<Vec<_>>();
+    let shell = Scratch::new();
+    let mut count = 0;
+    for row in table.lines().filter(|line| line.starts_with("| `")) {
+        let cells: Vec<&str> = row.split('|').collect();
+        for shape in words(cells[1]) {
+            let sizes = words(cells[2]);
+            let is_outer =
+                |size: &str| size.starts_with("outer") || size.starts_with("centre_line");
+            let value =
+                |size: &String| match (cells[2].contains("(three)"), cells[2].contains("(two)")) {
+                    (true, _) => "1 1 1",
+                    (_, true) => "1 1",
+                    _ if is_outer(size) => "2",
+                    _ => "1",
+                };
+            let heads: String = sizes.iter().map(|size| format!(",{size}")).collect();
+            let values: String = sizes.iter().map(|size| format!(",{}", value(size))).collect();
+            let spelled = shape[..1].to_uppercase() + &shape[1..].replace('_', " ");
+            let text = format!("name,mass,Cx,Cy,Cz,shape{heads}\nit,1,0,0,0,{spelled}{values}\n");
+            fs::write(shell.path("parts.csv"), text).unwrap();
+            shell.done(&["rollup", "parts.csv"], 0);
+            count += 1;
+        }
+    }
+    assert_eq!(count, 22);
+}
+
 #[test]
 fn the_page_shows_what_is_printed() {
     let shell = furnished();
@@ -203,7 +237,7 @@ fn errors_name_the_table_that_they_are_in() {
         ("child,parent\na,v\n", "edges.csv: line 2: 2 rows belong to nothing"),
         ("child,parent\na,v\nb,v\nx,v\n", "edges.csv: line 4: \"x\" has neither numbers nor parts"),
         ("child,parent\na,v,x\n", "edges.csv: line 2: the row has 3 values: there must be 2"),
-        ("kid,parent\na,v\n", "edges.csv: line 1: there is no column child"),
+        ("kid,parent\na,v\n", "edges.csv: line 1: no column is called child"),
         ("", "edges.csv: it is empty"),
         ("child,parent\nb,a\n", "list.csv: line 2: \"a\" has numbers of its own"),
     ] {

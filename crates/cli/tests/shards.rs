@@ -239,3 +239,32 @@ fn what_a_shard_does_not_do_binds_nobody() {
     scratch
         .done(&["study", "--runs", "40", "--seed", "5", "--shard", "1/1", "--out", "new", "-q"], 0);
 }
+
+/// Shards that were done into two folders are one study once the files of both are in one, if they are of the same study: runs of
+/// another one are missing, and are done again.
+#[test]
+fn blocks_that_were_copied_count_if_they_are_of_the_same_study() {
+    let scratch = Scratch::new();
+    let study = |out: &str, more: &[&str]| {
+        let all = [&["study", "--runs", "17000", "-q", "--out", out], more].concat();
+        assert_eq!(scratch.run(&all).status.code(), Some(0), "{all:?}");
+    };
+    study("whole", &[]);
+    for (seed, code) in [("2003", 0), ("6", 1)] {
+        let (here, there) = (format!("here-{seed}"), format!("there-{seed}"));
+        study(&here, &["--shard", "1/2"]);
+        study(&there, &["--shard", "2/2", "--seed", seed]);
+        let area = |of: &str| scratch.path(&format!("{of}/.gyradius/campaign"));
+        for (name, bytes) in files(&area(&there)) {
+            let place = area(&here).join(name);
+            if !place.exists() {
+                fs::create_dir_all(place.parent().unwrap()).unwrap();
+                fs::write(place, bytes).unwrap();
+            }
+        }
+        let told = scratch.done(&["report", &here], code);
+        assert_eq!(told.contains("missing"), code == 1, "{told}");
+        study(&here, &[]);
+        assert_eq!(content(&scratch.path(&here)), content(&scratch.path("whole")), "{seed}");
+    }
+}

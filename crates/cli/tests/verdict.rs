@@ -162,6 +162,16 @@ fn rows_of_failed_runs_alone_are_refused() {
             assert!(said.starts_with(&start) && said.contains("summary.json"), "{said}");
         }
     }
+    // Without any, no file is there to say so.
+    scratch.run(&["study", "--scenario", "it.toml", "--out", "none", "--rows", "none"]);
+    for table in ["none", "none/runs", "none/runs/proposed"] {
+        let said = scratch.done(&["verdict", table, "--require", REQUIRE], 2);
+        assert!(
+            said.contains("the study in none kept rows = \"none\"")
+                && said.contains("summary.json"),
+            "{said}"
+        );
+    }
 }
 
 /// A table of a study whose files are not those that were written says nothing of all runs, and one file of it nothing of

@@ -214,11 +214,25 @@ pub struct FileBody {
     name: String,
     line: usize,
     reading: Result<Reading, FileBodyError>,
+    summary: Option<String>,
 }
 
 impl FileBody {
     pub(crate) fn new(name: String, line: usize, reading: Result<Reading, FileBodyError>) -> Self {
-        Self { name, line, reading }
+        Self { name, line, reading, summary: None }
+    }
+
+    /// The same, of a row in which one cell may say that it sums up others.
+    pub(crate) fn summing_up(mut self, cell: Option<&str>) -> Self {
+        self.summary = cell.map(str::to_owned);
+        self
+    }
+
+    /// The cell that says that a row of a table sums up others, as `Total` does, if one says so: it may be a body, and is no
+    /// sample or part beside them.
+    #[must_use]
+    pub fn summary(&self) -> Option<&str> {
+        self.summary.as_deref()
     }
 
     /// Name of the link, body or row; empty if the file gives none.
@@ -269,7 +283,10 @@ mod tests {
     #[test]
     fn what_is_no_number_is_named() {
         let error = |raw| Number::parse("ixx", raw, None).unwrap_err().to_string();
-        assert_eq!(error("1,5"), "ixx = \"1,5\" is not a number");
+        assert_eq!(
+            error("1,5"),
+            "ixx = \"1,5\" is not a number: decimal commas are not read, and a point must stand there"
+        );
         assert_eq!(error(""), "ixx = \"\" is not a number");
         assert!(error("${m * r}").contains("xacro"));
         for raw in ["nan", "-inf", "1e999"] {

@@ -5,6 +5,7 @@ use crate::{
     body::{Number, Reading},
     error::Refusal,
     products_comment::stated_products,
+    summary_row::is_summary,
     table_header::{FIELDS, MASS, NAME, PRODUCTS, find_header},
     text::Text,
 };
@@ -34,7 +35,9 @@ pub(crate) fn read(text: &Text, default: Products) -> Result<Vec<FileBody>, Refu
             let (found, allowed) = (row.len(), header.row.len());
             Err(FileBodyError::Count { field: "the row", found, allowed })
         };
-        bodies.push(FileBody::new(name, line, reading));
+        let mut cells = row.iter().map(|field| field.of(text.as_str()).trim());
+        let summary = cells.find(|cell| is_summary(cell));
+        bodies.push(FileBody::new(name, line, reading).summing_up(summary));
     }
     Ok(bodies)
 }

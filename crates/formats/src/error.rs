@@ -190,6 +190,16 @@ impl From<FileProblem> for Refusal {
     }
 }
 
+/// What is said beside a number with a decimal comma.
+fn hint(value: &str) -> &'static str {
+    let has_one = value.matches(',').count() == 1 && !value.contains('.');
+    if has_one && value.replace(',', ".").parse::<f64>().is_ok() {
+        ": decimal commas are not read, and a point must stand there"
+    } else {
+        ""
+    }
+}
+
 /// Why the inertia of one body could not be read; its neighbours can.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -201,7 +211,7 @@ pub enum FileBodyError {
         field: &'static str,
     },
     /// A field holds no number.
-    #[error("{field} = \"{value}\" is not a number")]
+    #[error("{field} = \"{value}\" is not a number{}", hint(value))]
     NotANumber {
         /// The field.
         field: &'static str,

@@ -107,6 +107,18 @@ impl<'a> Rows<'a> {
     }
 }
 
+/// Most lines above a header, titles and the like, that are looked through for it.
+pub(crate) const TITLES: usize = 100;
+
+/// The lines of a text with their offsets.
+pub(crate) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut at = 0;
+    text.split_inclusive('\n').map(move |line| {
+        at += line.len();
+        (at - line.len(), line)
+    })
+}
+
 pub(crate) fn is_comment(line: &str) -> bool {
     line.starts_with('#') || line.trim().is_empty() || states_products(line)
 }

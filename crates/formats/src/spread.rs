@@ -42,6 +42,27 @@ pub(crate) fn has_word(heading: &str) -> bool {
     words(&heading.to_lowercase()).any(|word| WORDS.contains(&word))
 }
 
+/// Whether it speaks of nothing else, so that nobody knows of which number: `uncertainty`, `tolerance [kg]`.
+pub(crate) fn is_alone(heading: &str) -> bool {
+    const SURE: [&str; 10] = [
+        "uncertainty",
+        "unc",
+        "tolerance",
+        "tol",
+        "sd",
+        "std",
+        "stdev",
+        "stddev",
+        "deviation",
+        "variance",
+    ];
+    const BESIDE: [&str; 9] = ["standard", "kg", "g", "lb", "m", "mm", "in", "1", "3"];
+    let lower = heading.to_lowercase();
+    let words = || words(&lower).filter(|word| !word.is_empty());
+    words().any(|word| SURE.contains(&word))
+        && words().all(|word| WORDS.contains(&word) || BESIDE.contains(&word))
+}
+
 /// The words of a heading.
 pub(crate) fn words(heading: &str) -> impl Iterator<Item = &str> {
     heading.split(|c: char| !c.is_alphanumeric())

@@ -7,7 +7,7 @@ use crate::{
     heading_sign::without_sign,
     parts::heading::is_spread,
     product_heading::is_unread_product,
-    rows::{Field, Rows, is_comment},
+    rows::{Field, Rows, TITLES, is_comment, lines},
     spread,
     ten_heading::TenHeading,
     text::Text,
@@ -208,19 +208,10 @@ fn nearly(text: &Text, row: &[Field]) -> Option<String> {
     })
 }
 
-/// Most lines above a header, titles and the like, that are looked through for it.
-const TITLES: usize = 100;
-
 /// Finds the header, below any titles: what it says, and the rows below it. Where there is none, it may be a
 /// comment, as many programs write it.
 pub(crate) fn find_header(text: &Text) -> Result<(Header, Rows<'_>), Refusal> {
-    let lines = || {
-        let mut at = 0;
-        text.as_str().split_inclusive('\n').map(move |line| {
-            at += line.len();
-            (at - line.len(), line)
-        })
-    };
+    let lines = || lines(text.as_str());
     for (at, line) in lines().filter(|(_, line)| !is_comment(line)).take(TITLES) {
         if let Some(found) = header_at(text, at, line)? {
             return Ok(found);

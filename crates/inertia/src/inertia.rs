@@ -4,14 +4,19 @@ use nalgebra::{Matrix3, UnitQuaternion};
 
 use crate::{
     InertiaMatrix, InertiaMatrixError, PrincipalAxes, SecondMoments, SecondMomentsError,
-    matrix::rotation_matrix,
+    matrix::rotation_matrix, report::excess_percent,
 };
 
 /// How far principal moments may break the triangle inequality: by the rounding of decimal numbers.
 const UNROUNDED: f64 = 8.0 * f64::EPSILON;
 
-fn percent(x: f64) -> String {
-    if x < 0.001 { format!("{x:.1e}") } else { format!("{x:.3}") }
+/// How the largest moment breaks the inequality.
+fn excess(percent: f64) -> String {
+    match percent {
+        p if !p.is_finite() => "that sum is not positive beyond rounding".to_owned(),
+        p if p < 0.001 => format!("it is {p:.1e} % more"),
+        p => format!("it is {p:.3} % more"),
+    }
 }
 
 /// Why a matrix is not the inertia of any body.
@@ -23,15 +28,16 @@ pub enum RealizabilityError {
     Matrix(#[from] InertiaMatrixError),
     /// A second mass moment is negative: the triangle inequality fails for that axis.
     #[error(
-        "no body has this inertia: its principal moments are {:?}, {:?} and {:?} kg·m², and the sum \
-         of any two must be at least the third (short by {} % of their sum)",
-        .moments[0], .moments[1], .moments[2], percent(*.shortfall_percent)
+        "no body has this inertia: its principal moments are {:?}, {:?} and {:?} kg·m², and the largest \
+         must be at most the sum of the other two ({})",
+        .moments[0], .moments[1], .moments[2], excess(*.excess_percent)
     )]
     NotRealizable {
         /// Principal moments, kg·m².
         moments: [f64; 3],
-        /// How far the smallest K_k lies below zero, in percent of Σ|I_k|.
-        shortfall_percent: f64,
+        /// How far the largest exceeds the sum of the other two, in percent of that sum; infinite if that sum is not
+        /// positive, or rounding beside the largest.
+        excess_percent: f64,
     },
     /// Second moments out of range.
     #[error(transparent)]
@@ -188,12 +194,10 @@ impl RealizabilityError {
     /// Of a matrix that is not realizable.
     pub(crate) fn of(matrix: &InertiaMatrix) -> Self {
         let axes = matrix.principal_axes();
-        let smallest = axes.second_moments().into_iter().fold(f64::INFINITY, f64::min);
         let size = matrix.matrix().amax();
-        let sum: f64 = axes.moments().iter().map(|i| (i / size).abs()).sum();
         Self::NotRealizable {
             moments: axes.moments(),
-            shortfall_percent: -100.0 * (smallest / size) / sum,
+            excess_percent: excess_percent(axes.moments().map(|moment| moment / size)),
         }
     }
 }

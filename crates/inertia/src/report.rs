@@ -228,7 +228,7 @@ fn largest(m: [f64; 3]) -> (usize, f64) {
     (axis, m[(axis + 1) % 3] + m[(axis + 2) % 3])
 }
 
-fn excess_percent(m: [f64; 3]) -> f64 {
+pub(crate) fn excess_percent(m: [f64; 3]) -> f64 {
     let (axis, rest) = largest(m);
     if m[axis] <= rest {
         0.0

@@ -206,6 +206,30 @@ def test_the_program(tmp_path: Path) -> None:
         assert subprocess.run([script, "--version"], capture_output=True, check=True).stdout
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="signals, and a shell")
+def test_the_program_is_called_again_and_interrupted_as_the_other_one(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "gyradius"]
+    script = subprocess.run(
+        [*command, "slurm", "--runs", "100", "--shards", "1", "--time", "10", "--out", "it"],
+        capture_output=True, text=True, cwd=tmp_path, check=True,
+    ).stdout
+    line = next(line for line in script.splitlines() if line.startswith("exec ") and " study " in line)
+    assert f"{sys.executable} -m gyradius study " in line
+    done = subprocess.run(["bash", "-c", line.replace("$SLURM_ARRAY_TASK_ID", "1")], cwd=tmp_path, capture_output=True)
+    assert done.returncode == 0 and (tmp_path / "it").is_dir()
+
+    child = subprocess.Popen(
+        [*command, "study", "--runs", "2000000", "--out", "long"], stderr=subprocess.PIPE, text=True, cwd=tmp_path
+    )
+    deadline = time.monotonic() + 60
+    while not (tmp_path / "long").exists() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    time.sleep(1)
+    child.send_signal(signal.SIGINT)
+    _, said = child.communicate(timeout=60)
+    assert child.returncode == 130 and "Traceback" not in said, said
+
+
 def test_import_is_quick_and_brings_nothing() -> None:
     program = (
         "import sys, numpy; before = set(sys.modules); import gyradius;"

@@ -274,6 +274,8 @@ def test_statements_come_true(said: dict[str, object], link: MassProperties) -> 
         ({"mass": {"percent": 5, "sigmas": 0}}, "sigmas"),
         ({"mass": {"percent": 5, "sigmas": 1, "colour": 2}}, "colour"),
         ({"mass": "5%", "sigmas": 0.0}, "sigmas"),
+        ({}, "nothing is stated"),
+        ({"mass": None, "sigmas": 3.0}, "nothing is stated"),
     ],
 )
 def test_statements_that_are_refused(said: dict[str, object], word: str, link: MassProperties) -> None:

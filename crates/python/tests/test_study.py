@@ -341,6 +341,23 @@ def test_another_function_of_the_same_source_is_refused(made: Any, tmp_path: Pat
     assert again.to_numpy()["all"]["y"].tolist() == first.to_numpy()["all"]["y"].tolist()
 
 
+def test_a_program_is_the_module_that_others_import(tmp_path: Path) -> None:
+    (tmp_path / "mine.py").write_text(
+        "import multiprocessing, gyradius\n"
+        f"SCENARIO = {scenario()!r}\n"
+        "def simulate(inputs):\n"
+        "    return {'y': 2 * inputs['x']}\n"
+        "def work(_):\n"
+        "    return len(gyradius.study(SCENARIO, simulate, out='out').to_numpy()['all']['y'])\n"
+        "if __name__ == '__main__':\n"
+        "    with multiprocessing.get_context('spawn').Pool(1) as pool:\n"
+        "        print(work(0), *pool.map(work, [0]))\n"
+    )
+    for words in (["mine.py"], ["-m", "mine"], ["-c", "import mine; print(mine.work(0))"]):
+        done = subprocess.run([sys.executable, *words], cwd=tmp_path, capture_output=True, text=True)
+        assert done.returncode == 0 and len(set(done.stdout.split())) == 1, done
+
+
 def test_a_run_that_is_another_is_told() -> None:
     state = {"shift": 0.0}
 

@@ -1,5 +1,6 @@
 //! Where a campaign that is not complete is: what it is, its blocks, and the records that tell of them.
 
+use serde::{Deserialize, Serialize};
 use std::{
     collections::BTreeSet,
     fs::{self, File, OpenOptions, TryLockError},
@@ -23,6 +24,19 @@ const RECORD: &str = "record";
 const MARK: &str = "mark";
 /// Tells that a rule looks at the runs while they are done, whoever goes on with them.
 const LOOKED: &str = "looked";
+
+/// A line of a record: a block, and of which campaign it is. Records that somebody copied into the folder of another campaign
+/// tell of none of its blocks.
+#[derive(Debug, Serialize, Deserialize)]
+struct Line {
+    campaign: String,
+    block: Block,
+}
+
+/// The line of a record that tells of a block.
+pub(super) fn line(identity: &Identity, block: &Block) -> Result<String, Problem> {
+    Ok(serde_json::to_string(&Line { campaign: identity.word(), block: block.clone() })?)
+}
 
 /// The folder of an unfinished campaign.
 #[derive(Clone, Debug)]
@@ -181,14 +195,19 @@ impl Area {
         Ok(records)
     }
 
-    /// The blocks that the records tell of, each once; a line that was broken off tells of none.
+    /// The blocks that the records tell of, each once; a line that was broken off tells of none, and none is known where nothing
+    /// tells what the campaign is.
     pub(super) fn recorded(&self) -> Result<Vec<Block>, Problem> {
+        let Some(campaign) = self.identity()?.map(|identity| identity.word()) else {
+            return Ok(Vec::new());
+        };
         let texts = self.records()?.into_iter().map(fs::read).collect::<io::Result<Vec<_>>>()?;
         let mut seen = BTreeSet::new();
         let lines = texts.iter().flat_map(|text| text.split(|byte| *byte == b'\n'));
         let lines = lines.filter(|line| !line.is_empty() && seen.insert(*line));
-        let blocks = lines.filter_map(|line| serde_json::from_slice::<Block>(line).ok());
-        Ok(blocks.filter(Block::is_sound).collect())
+        let lines = lines.filter_map(|line| serde_json::from_slice::<Line>(line).ok());
+        let own = lines.filter(|line| line.campaign == campaign).map(|line| line.block);
+        Ok(own.filter(Block::is_sound).collect())
     }
 
     /// Whether shards have left records.
@@ -197,8 +216,9 @@ impl Area {
     }
 
     /// One record of these blocks in place of all.
-    pub(super) fn rewrite(&self, blocks: &[&Block]) -> Result<File, Problem> {
-        let lines = blocks.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>()?;
+    pub(super) fn rewrite(&self, identity: &Identity, blocks: &[&Block]) -> Result<File, Problem> {
+        let lines =
+            blocks.iter().map(|block| line(identity, block)).collect::<Result<Vec<_>, _>>()?;
         let path = self.0.join(RECORD);
         self.replace(RECORD, &(lines.join("\n") + "\n"))?;
         for record in self.records()?.iter().filter(|record| **record != path) {

@@ -19,7 +19,7 @@ use std::{
 
 use super::{
     Folder, FolderError, Problem,
-    area::Area,
+    area::{Area, line},
     disk,
     hidden::Hidden,
     manifest::Block,
@@ -254,7 +254,7 @@ impl Blocks {
         let dropped: Vec<&Block> = recorded.iter().filter(|block| !known.contains(block)).collect();
         if !dropped.is_empty() || self.area.has_shards()? {
             // The record first: a file that it does not tell of is none of the blocks.
-            let record = self.area.rewrite(&kept)?;
+            let record = self.area.rewrite(&self.identity, &kept)?;
             let files: BTreeSet<PathBuf> = kept.iter().map(|block| self.path(block)).collect();
             for path in dropped.iter().map(|block| self.path(block)) {
                 if !files.contains(&path) {
@@ -397,7 +397,7 @@ impl Blocks {
         disk::sync_folder(&folder)?;
         disk::sync_folder(self.area.path())?;
         let mut state = self.locked();
-        let line = format!("\n{}\n", serde_json::to_string(&block)?);
+        let line = format!("\n{}\n", line(&self.identity, &block)?);
         disk::append(&state.record, &self.record, &line)?;
         state.blocks.retain(|b| !(b.model == block.model && b.first_run == block.first_run));
         state.blocks.push(block);

@@ -103,9 +103,10 @@ fn write(
         }
         // A folder is rarely called like a file: an extension that tells no table is a slip.
         Some(path) if path.extension().is_some() && !path.is_dir() && !ends_in_slash(path) => {
-            let message =
-                "the extension tells no table: a folder of this name is written with / at its end";
-            Err(format!("{}: {message}", path.display()).into())
+            let message = "it ends like a file and like no table, which ends in .csv, .jsonl, .npy or .parquet";
+            let name = path.display();
+            Err(format!("{name}: {message}; a folder of this name must be written as {name}/")
+                .into())
         }
         Some(folder) => {
             let robots = arguments.runs.unwrap_or_default();
@@ -221,9 +222,13 @@ fn left_as_they_are(robot: &RobotFile, draw: &RobotDraw<'_>) -> String {
     }
     for (name, defaults) in defaults_of(robot, draw).iter().take(LISTED) {
         let fields = defaults.join(", ");
+        let of_mass = defaults.contains(&"mass").then_some("a mass of 1 kg");
+        let of_inertia = defaults.iter().any(|field| *field != "mass");
+        let of_inertia = of_inertia.then_some("moments of inertia of 1 kg·m²");
+        let taken: Vec<&str> = of_mass.into_iter().chain(of_inertia).collect();
         out += &format!(
-            "note: {name}: the file does not state {fields}: its draws are about the defaults of SDF, a mass of 1 kg and \
-             moments of inertia of 1 kg·m²\n"
+            "note: {name}: the file does not state {fields}: its draws are about the defaults of SDF, {}\n",
+            taken.join(" and ")
         );
     }
     for gap in robot.gaps().iter().filter(|gap| gap.kind() != GapKind::Misplaced) {
@@ -274,8 +279,8 @@ fn table_of(links: &[LinkSummary]) -> String {
     if impossible > 0 {
         let share = 100.0 * impossible as f64 / tried as f64;
         out += &format!(
-            "if each moment were multiplied by a factor of its own instead, no body could have {share:.1} % of the inertias; \
-             some body can have each of those that were drawn\n"
+            "all of these inertias are possible; if each moment had been multiplied by a random factor of its own instead, {share:.1} % of \
+             them would be impossible\n"
         );
     }
     out + &warnings_of(links)

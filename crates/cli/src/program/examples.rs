@@ -3,8 +3,8 @@
 pub(crate) const EXIT_CODES: &str = "\
 Exit code: 0 if all went well, 1 if something was found or is missing (check, fit, report, \
 status, study, verdict), 2 if what was asked \
-cannot be done, with a message on standard error. A reader of the output that stops reading, as \
-head does, is no error; a full disk behind it is.";
+cannot be done, with a message on standard error. It is no error if the program that reads the \
+output stops early, as head does; a full disk is one.";
 
 pub(crate) const REPLAY_EXAMPLES: &str = "\
 Examples:

@@ -41,6 +41,12 @@ const STANDARD_INPUT: &str = "-";
 /// Returns 0, or 2 after a message on standard error; `check`, `fit`, `report`, `status`, `study` and `verdict` also return 1, for what
 /// was found or is missing.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    run_as(Vec::new(), arguments)
+}
+
+/// The same, where the words that call the program in a shell are not the path of the executable, as `python -m gyradius`: scripts
+/// that it writes call it so.
+pub fn run_as(called: Vec<OsString>, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
         Err(error) => return not_run(&error),
@@ -56,7 +62,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Model(arguments) => model::model(arguments).map(done),
         Command::Report(arguments) => report::report(arguments),
         Command::Status(arguments) => status::status(arguments),
-        Command::Slurm(arguments) => slurm::slurm(arguments).map(done),
+        Command::Slurm(arguments) => slurm::slurm(arguments, called).map(done),
         Command::Replay(arguments) => replay::replay(arguments),
         Command::Draw(arguments) => draw::draw(arguments),
         Command::Rollup(arguments) => rollup::rollup(arguments),

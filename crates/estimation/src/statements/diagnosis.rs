@@ -219,7 +219,8 @@ fn centre_alone(model: &StatedModel, stated: &Stated) -> Vec<StatementWarning> {
     entries
         .filter_map(|(entry, (stated, variance))| {
             let (stated, alone) = (stated?, variance.sqrt());
-            let more = alone > stated * (1.0 + 1e-9);
+            // By less than a thousandth, nobody sees it.
+            let more = alone > stated * 1.001;
             more.then_some(StatementWarning::Alone { entry, alone, stated })
         })
         .collect()

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::heading::Unread;
 use crate::{FileBodyError, FileProblem, UnitError, body::shortened, error::Refusal};
 
 /// How many headings a message names.
@@ -113,6 +114,23 @@ impl fmt::Display for PartsError {
 
 impl std::error::Error for PartsError {}
 
+/// Why a column that is not read must not say so, and what to do.
+fn because(what: Unread) -> &'static str {
+    match what {
+        Unread::Count => {
+            "a row is one part, and must have mass, mass centre and inertia of all of them together, or stand as many times as \
+             there are parts, each with its own mass centre; the column must be empty or 1"
+        }
+        Unread::Turn => {
+            "angles are not read, for their order is not known: a part that is turned must have the quaternion of its attitude in \
+             attitude_x, attitude_y, attitude_z and attitude_w; the column must be empty or 0"
+        }
+        Unread::Growth => {
+            "no growth allowance is added: the mass and the inertia must have it in them; the column must be empty or 0"
+        }
+    }
+}
+
 /// What is wrong with a list of parts.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -121,7 +139,7 @@ pub enum PartsProblem {
     #[error(transparent)]
     File(FileProblem),
     /// A column is missing.
-    #[error("there is no column {column}: the header must name it")]
+    #[error("no column is called {column}, and there must be one")]
     NoColumn {
         /// Its name.
         column: &'static str,
@@ -143,6 +161,22 @@ pub enum PartsProblem {
         /// The heading.
         heading: String,
     },
+    /// A column that would change the numbers of the row, and is not read.
+    #[error("column {heading:?} says {value:?}: {}", because(*.what))]
+    Unread {
+        /// What it would change.
+        what: Unread,
+        /// The heading.
+        heading: String,
+        /// The cell.
+        value: String,
+    },
+    /// A row that sums up others.
+    #[error(
+        "the name is that of a row which sums up others, and rollup would count it as a part: it must be left out, or \
+         have the name of a part"
+    )]
+    Summary,
     /// A column of a number whose unit is not read.
     #[error(transparent)]
     Unit(#[from] Box<UnitError>),

@@ -87,7 +87,69 @@ pub(crate) enum Heading {
     Signed,
     /// It looks like a standard deviation, and is none.
     NoDeviation,
+    /// It may hold something that would change the numbers of the row, and that is not read.
+    Unread(Unread),
     Other,
+}
+
+/// What would change the numbers of a row, and is not read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unread {
+    /// How many parts a row is.
+    Count,
+    /// An angle by which the part is turned.
+    Turn,
+    /// A growth allowance of the mass.
+    Growth,
+}
+
+impl Unread {
+    /// What a heading holds of this kind.
+    fn of(text: &str) -> Option<Self> {
+        const COUNT: [&str; 11] = [
+            "qty",
+            "quantity",
+            "count",
+            "pcs",
+            "pieces",
+            "multiplicity",
+            "instances",
+            "numberof",
+            "nooff",
+            "numberoff",
+            "noofparts",
+        ];
+        const TURN: [&str; 12] = [
+            "roll", "pitch", "yaw", "euler", "rpy", "rotx", "roty", "rotz", "rotation", "rx", "ry",
+            "rz",
+        ];
+        const GROWTH: [&str; 4] = ["mga", "growth", "contingency", "margin"];
+        let lower = text.to_lowercase();
+        let words: Vec<&str> = spread::words(&lower).filter(|word| !word.is_empty()).collect();
+        if words.iter().any(|word| GROWTH.contains(word)) {
+            return Some(Self::Growth);
+        }
+        let first = words.first()?;
+        if COUNT.contains(first) || COUNT.contains(&squeezed(&lower).as_str()) {
+            Some(Self::Count)
+        } else {
+            TURN.contains(first).then_some(Self::Turn)
+        }
+    }
+
+    /// Whether a cell says nothing that would change the row.
+    pub(super) fn is_neutral(self, cell: &str) -> bool {
+        let of = |word: &str| word.trim_end_matches(['%', '°']).trim().parse::<f64>().ok();
+        match self {
+            Self::Count => of(cell) == Some(1.0),
+            Self::Turn => cell
+                .split([' ', ',', ';', '[', ']', '(', ')'])
+                .filter(|word| !word.is_empty())
+                .all(|word| of(word) == Some(0.0)),
+            // A policy has a name, and the column may be of those.
+            Self::Growth => of(cell).is_none_or(|share| share == 0.0),
+        }
+    }
 }
 
 impl Column {
@@ -127,6 +189,15 @@ impl Group {
 }
 
 impl Heading {
+    /// What a column of numbers is in, and its unit in SI, if one is stated.
+    pub(super) fn dimension(&self) -> Option<(Dimension, Option<f64>)> {
+        match *self {
+            Self::Column(mut column) => column.unit().map(|(dimension, unit)| (dimension, *unit)),
+            Self::Size(_, unit) => Some((Dimension::Length, unit)),
+            _ => None,
+        }
+    }
+
     /// Whether two columns hold the same, in the same unit.
     pub(crate) fn says_the_same(&self, other: &Self) -> bool {
         match (self, other) {
@@ -139,14 +210,7 @@ impl Heading {
     /// The first of the ten among some columns in a unit that is not of SI, if this one is a number of its kind that
     /// states no unit: nobody knows then whether it is in that unit or in SI.
     pub(crate) fn unit_it_lacks(&self, beside: &[Self]) -> Option<usize> {
-        let dimension = match *self {
-            Self::Column(mut column) => {
-                let (dimension, None) = column.unit()? else { return None };
-                dimension
-            }
-            Self::Size(_, None) => Dimension::Length,
-            _ => return None,
-        };
+        let (dimension, None) = self.dimension()? else { return None };
         beside.iter().position(|other| match *other {
             Self::Column(Column::Value(i, Some(si))) => {
                 si != 1.0 && Group(i, 1).dimension() == dimension
@@ -192,10 +256,17 @@ impl Heading {
                 other => other,
             };
         }
-        if let Some(found) = word(&squeezed(text)).map(Self::Column).or_else(|| quantity(text)) {
+        let found = word(&squeezed(text)).map(Self::Column).or_else(|| quantity(text));
+        if let Some(Self::Column(column)) = found {
+            return Self::Column(column);
+        }
+        if let Some(unread) = Unread::of(text) {
+            return Self::Unread(unread);
+        }
+        if let Some(found) = found {
             return found;
         }
-        if spread::is_marked(text) || is_spread(text) {
+        if spread::is_marked(text) || is_spread(text) || spread::is_alone(text) {
             Self::NoDeviation
         } else if is_unread_product(text) {
             Self::Product
@@ -367,7 +438,17 @@ mod tests {
             ("-Ixy", Heading::Signed),
             ("-sigma_Ixy", Heading::Signed),
             ("Ixx uncertainty [kg m2]", Heading::NoDeviation),
+            ("uncertainty", Heading::NoDeviation),
+            ("Tolerance [kg]", Heading::NoDeviation),
             ("tolerance class", Heading::Other),
+            ("Qty", Heading::Unread(Unread::Count)),
+            ("quantity [-]", Heading::Unread(Unread::Count)),
+            ("No. off", Heading::Unread(Unread::Count)),
+            ("part number", Heading::Other),
+            ("roll_deg", Heading::Unread(Unread::Turn)),
+            ("MGA %", Heading::Unread(Unread::Growth)),
+            ("mass growth allowance", Heading::Unread(Unread::Growth)),
+            ("basic mass", Heading::Other),
             ("function", Heading::Other),
             ("Mass [Mg]", value(0, Some(1000.0))),
             ("supplier", Heading::Other),

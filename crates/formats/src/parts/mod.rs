@@ -5,6 +5,7 @@ pub(crate) mod heading;
 mod row;
 
 pub use error::{PartsError, PartsFile, PartsProblem};
+pub use heading::Unread;
 pub use row::{PartNumbers, PartRow};
 
 use std::collections::BTreeMap;
@@ -14,14 +15,18 @@ use crate::{
     body::shortened,
     error::Refusal,
     products_comment::stated_products,
-    rows::{Field, Rows},
+    rows::{Field, Rows, TITLES, is_comment, lines},
     text::Text,
+    units::Unit,
 };
 use heading::{Column, Heading};
 use row::Cells;
 
 /// The assembly of a list without assemblies.
 const WHOLE: &str = "whole";
+
+/// How far the numbers of a total may be from those of its parts, as they are rounded.
+const ROUNDED: f64 = 1e-3;
 
 /// A list of parts and assemblies.
 ///
@@ -104,6 +109,35 @@ impl PartsTable {
         &self.rows
     }
 
+    /// A part that has mass and mass centre of all the others together, and may be their total, of three or more: its name
+    /// does not say so.
+    #[must_use]
+    pub fn like_a_total(&self) -> Option<&PartRow> {
+        let parts = || self.rows.iter().filter_map(|row| Some((row, row.numbers()?)));
+        let moments =
+            |numbers: &PartNumbers| numbers.mass_centre_m().map(|x| x * numbers.mass_kg());
+        let mut all = [0.0; 4];
+        let mut size = 0.0_f64;
+        for (_, numbers) in parts() {
+            let [x, y, z] = moments(numbers);
+            for (sum, one) in all.iter_mut().zip([numbers.mass_kg(), x, y, z]) {
+                *sum += one;
+            }
+            size = numbers.mass_centre_m().iter().fold(size, |size, x| size.max(x.abs()));
+        }
+        let is_total = |numbers: &PartNumbers| {
+            let mass = numbers.mass_kg();
+            let near =
+                |twice: f64, one: f64, size: f64| (twice - 2.0 * one).abs() <= ROUNDED * size;
+            let centre = moments(numbers).into_iter().zip(&all[1..]);
+            mass > 0.0
+                && near(all[0], mass, mass)
+                && centre.into_iter().all(|(one, twice)| near(*twice, one, mass * size))
+        };
+        let mut totals = parts().filter(|(_, numbers)| is_total(numbers));
+        totals.next().map(|(row, _)| row).filter(|_| parts().count() >= 3)
+    }
+
     /// Headings of columns that mean nothing here.
     #[must_use]
     pub fn passed_over(&self) -> &[String] {
@@ -112,12 +146,9 @@ impl PartsTable {
 
     fn rows_of(bytes: &[u8], products: Option<Products>) -> Result<Raw, PartsError> {
         let text = Text::new(bytes, true)?;
-        let mut rows = Rows::new(text.as_str());
-        let Some(first) = next(&text, &mut rows)? else {
+        let Some((line, headings, mut rows)) = header(&text)? else {
             return Err(Refusal::from(FileProblem::Empty).into());
         };
-        let line = line_of(&text, &first);
-        let headings: Vec<String> = first.iter().map(|field| cell(&text, field)).collect();
         let columns = headings.iter().map(|heading| Heading::of(heading));
         let mut columns: Vec<Heading> = columns.collect();
         if !columns.contains(&Heading::Column(Column::Shape)) {
@@ -145,9 +176,11 @@ impl PartsTable {
                 Heading::NoDeviation => {
                     return refuse(PartsProblem::Deviation { heading: shortened(heading) });
                 }
-                Heading::Unit(..) | Heading::SizeUnit(..) | Heading::Product | Heading::Other => {
-                    passed_over.push(shortened(heading))
-                }
+                Heading::Unit(..)
+                | Heading::SizeUnit(..)
+                | Heading::Product
+                | Heading::Unread(_)
+                | Heading::Other => passed_over.push(shortened(heading)),
                 Heading::Column(_) | Heading::Size(..) => {
                     if let Some(first) = columns[..at].iter().position(|c| c.says_the_same(column))
                     {
@@ -159,7 +192,7 @@ impl PartsTable {
         }
         let has = |wanted: Column| columns.contains(&Heading::Column(wanted));
         let has_mass = columns.iter().any(|c| matches!(c, Heading::Column(Column::Value(0, _))));
-        for (there, column) in [(has(Column::Name), "name"), (has_mass, "mass")] {
+        for (there, column) in [(has(Column::Name), "name or id"), (has_mass, "mass")] {
             if !there {
                 let error = PartsError::new(line, None, PartsProblem::NoColumn { column });
                 return Err(error.beside(&passed_over));
@@ -176,7 +209,8 @@ impl PartsTable {
                 );
             }
             let cells: Vec<String> = fields.iter().map(|field| cell(&text, field)).collect();
-            let row = Cells { columns: &columns, cells: &cells, products }.row(line);
+            let row =
+                Cells { columns: &columns, headings: &headings, cells: &cells, products }.row(line);
             found.push(row.map_err(|error| error.beside(&passed_over))?);
         }
         Ok(Raw { rows: found, passed_over, has_parents })
@@ -228,6 +262,62 @@ fn edges_of(bytes: &[u8]) -> Result<Vec<(usize, String, String)>, PartsError> {
         edges.push((line, of(places[0])?, of(places[1])?));
     }
     Ok(edges)
+}
+
+/// Line and headings of the header, which may stand below titles and have the units in a row below it, and the rows below both.
+/// Where no line names parts and masses, the first one is the header.
+fn header(text: &Text) -> Result<Option<(usize, Vec<String>, Rows<'_>)>, PartsError> {
+    let cells = |row: &[Field]| row.iter().map(|field| cell(text, field)).collect::<Vec<_>>();
+    let at = |(at, line): (usize, &str)| {
+        let mut rows = Rows::at(text.as_str(), at, line);
+        // In a title, a quotation mark is no more than that.
+        let first = rows.row().ok()?;
+        let columns: Vec<Heading> = cells(&first).iter().map(|cell| Heading::of(cell)).collect();
+        let has = |is: fn(&Heading) -> bool| columns.iter().any(is);
+        let is_header = has(|heading| *heading == Heading::Column(Column::Name))
+            && has(|heading| matches!(heading, Heading::Column(Column::Value(0, _))));
+        is_header.then_some((first, rows))
+    };
+    let mut titles = lines(text.as_str()).filter(|(_, line)| !is_comment(line)).take(TITLES);
+    let (first, mut rows) = match titles.find_map(at) {
+        Some(found) => found,
+        None => {
+            let mut rows = Rows::new(text.as_str());
+            let Some(first) = next(text, &mut rows)? else { return Ok(None) };
+            (first, rows)
+        }
+    };
+    let mut headings = cells(&first);
+    let mut below = rows.clone();
+    if let Some(Ok(units)) = below.next()
+        && let Some(with_units) = with_units(&headings, &cells(&units))
+    {
+        (headings, rows) = (with_units, below);
+    }
+    Ok(Some((line_of(text, &first), headings, rows)))
+}
+
+/// The headings with the units of the row below them, if it is a row of units: it has one for a number, and no number.
+fn with_units(headings: &[String], below: &[String]) -> Option<Vec<String>> {
+    let mut some = false;
+    let mut together = headings.to_vec();
+    for (heading, unit) in together.iter_mut().zip(below) {
+        let Some((dimension, stated)) = Heading::of(heading).dimension() else { continue };
+        if unit.is_empty() || unit == "-" {
+            continue;
+        }
+        if unit.parse::<f64>().is_ok() {
+            return None;
+        }
+        let unit = unit.trim_start_matches(['[', '(']).trim_end_matches([']', ')']);
+        let si = Unit::of(unit, dimension).ok().map(|unit| unit.si);
+        some |= si.is_some() || unit == "%";
+        // Both may say the same.
+        if si.is_none() || si != stated {
+            *heading = format!("{heading} [{unit}]");
+        }
+    }
+    (some && headings.len() == below.len()).then_some(together)
 }
 
 fn next(text: &Text, rows: &mut Rows<'_>) -> Result<Option<Vec<Field>>, PartsError> {

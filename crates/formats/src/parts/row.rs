@@ -9,6 +9,7 @@ use super::heading::{self, Column, Group, Heading, Scale, VALUES};
 use crate::{
     FileBodyError, Products,
     body::{Number, shortened},
+    summary_row::is_summary,
 };
 
 /// How far the four components of an attitude may be from a unit quaternion.
@@ -117,6 +118,7 @@ impl PartNumbers {
 /// The cells of a row under their headings.
 pub(super) struct Cells<'a> {
     pub(super) columns: &'a [Heading],
+    pub(super) headings: &'a [String],
     pub(super) cells: &'a [String],
     pub(super) products: Option<Products>,
 }
@@ -133,7 +135,14 @@ impl Cells<'_> {
             return Err(PartsError::new(line, None, problem));
         };
         let parent = self.text(Column::Parent).map(str::to_owned);
-        let numbers = self.numbers().map_err(|p| PartsError::new(line, Some(&name), p))?;
+        let refused = |problem| PartsError::new(line, Some(&name), problem);
+        if let Some(problem) = self.unread() {
+            return Err(refused(problem));
+        }
+        let numbers = self.numbers().map_err(refused)?;
+        if numbers.is_some() && is_summary(&name) {
+            return Err(refused(PartsProblem::Summary));
+        }
         let place = (PartsFile::Parts, line);
         Ok(PartRow { name, parent, place, parent_place: place, numbers })
     }
@@ -142,6 +151,19 @@ impl Cells<'_> {
     fn given<T>(&self, of: impl Fn(&Heading) -> Option<T>) -> impl Iterator<Item = (T, &str)> {
         let pairs = self.columns.iter().zip(self.cells).filter(|(_, cell)| !cell.is_empty());
         pairs.filter_map(move |(heading, cell)| Some((of(heading)?, cell.as_str())))
+    }
+
+    /// The first cell that would change the numbers of the row, and is not read.
+    fn unread(&self) -> Option<PartsProblem> {
+        let cells = self.columns.iter().zip(self.headings).zip(self.cells);
+        let problem = |((column, heading), cell): ((&Heading, &String), &String)| match *column {
+            Heading::Unread(what) if !cell.is_empty() && !what.is_neutral(cell) => {
+                let (heading, value) = (shortened(heading), shortened(cell));
+                Some(PartsProblem::Unread { what, heading, value })
+            }
+            _ => None,
+        };
+        cells.filter_map(problem).next()
     }
 
     fn text(&self, wanted: Column) -> Option<&str> {
@@ -165,6 +187,7 @@ impl Cells<'_> {
             | Heading::Product
             | Heading::Signed
             | Heading::NoDeviation
+            | Heading::Unread(_)
             | Heading::Other => None,
         };
         if self.given(says).next().is_none() {
@@ -213,6 +236,7 @@ impl Cells<'_> {
         let Some(name) = self.text(Column::Shape) else {
             return Ok(is_point.unwrap_or_default().then_some(None));
         };
+        let name = name.to_lowercase().replace([' ', '-'], "_");
         if name == "point" {
             return Ok(Some(None));
         }

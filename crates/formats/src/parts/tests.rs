@@ -469,3 +469,98 @@ fn sizes_without_shapes_are_not_read() {
     assert_eq!(table.rows()[0].numbers(), None);
     assert_eq!(table.passed_over(), ["length", "height (max)", "arm_m"]);
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// As spreadsheets have them: titles above, the units in a row of their own, some columns without.
+    #[test]
+    fn titles_and_rows_of_units_are_read(
+        titles in proptest::collection::vec("[A-Za-z\" ;]{0,20}", 0..4),
+        separator in proptest::sample::select(vec![",", ";", "\t"]),
+        (mass, kg) in proptest::sample::select(vec![("kg", 1.0), ("lb", 0.45359237), ("[g]", 1e-3)]),
+        (length, m) in proptest::sample::select(vec![("m", 1.0), ("in", 0.0254), ("(mm)", 1e-3)]),
+        (inertia, kg_m2) in proptest::sample::select(vec![("kg m2", 1.0), ("lb in2", 0.45359237 * 0.0254 * 0.0254)]),
+        above in any::<[bool; 3]>(),
+        percent in any::<bool>(),
+    ) {
+        let names = ["name", "mass", "Cx", "Cy", "Cz", "Ixx", "Iyy", "Izz", "sigma_mass"];
+        let dimension = |i: usize| match i { 1 | 8 => 0, 2..=4 => 1, _ => 2 };
+        let of = [mass, length, inertia];
+        let deviation = if percent { "%" } else { mass };
+        let unit = |i: usize| if i == 8 { deviation } else { of[dimension(i)] };
+        // The unit stands in the heading, in the row below, or in both.
+        let heads = (0..9).map(|i| {
+            let bare = unit(i).trim_matches(['[', ']', '(', ')']);
+            if i > 0 && above[dimension(i)] { format!("{} [{bare}]", names[i]) } else { names[i].to_owned() }
+        });
+        let heads: Vec<String> = heads.collect();
+        let units: Vec<&str> = (0..9).map(|i| if i == 0 { "" } else { unit(i) }).collect();
+        let row = ["arm", "2", "3", "4", "5", "60", "70", "80", "0.5"];
+        let title: String = titles.iter().map(|title| format!("{title}\n")).collect();
+        let lines = [heads.join(separator), units.join(separator), row.join(separator)].join("\n");
+        let text = format!("{title}{lines}\n");
+        let read = read(&text).unwrap_or_else(|error| panic!("{text}{error}"));
+        let numbers = read.rows()[0].numbers().unwrap();
+        let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-12;
+        prop_assert!(near(numbers.mass_kg(), 2.0 * kg), "{}{:?}", text, numbers);
+        prop_assert!(near(numbers.mass_centre_m()[2], 5.0 * m), "{}{:?}", text, numbers);
+        prop_assert!(near(numbers.inertia().entries()[1], 70.0 * kg_m2), "{}{:?}", text, numbers);
+        let sigma = if percent { 0.01 * 2.0 * kg * 0.5 } else { 0.5 * kg };
+        prop_assert!(near(numbers.deviations()[0], sigma), "{}{:?}", text, numbers);
+    }
+
+    /// The total of any parts is one, and another body of the same mass is none.
+    #[test]
+    fn a_total_under_another_name_is_seen(
+        parts in proptest::collection::vec((0.1..100.0, proptest::array::uniform3(-3.0..3.0)), 2..8),
+        place in any::<prop::sample::Index>(),
+    ) {
+        let mass: f64 = parts.iter().map(|(mass, _)| mass).sum();
+        let centre = |axis: usize| parts.iter().map(|(m, c): &(f64, [f64; 3])| m * c[axis]).sum::<f64>() / mass;
+        let row = |name: &str, mass: f64, c: [f64; 3]| {
+            format!("{name},{mass:.5},{:.5},{:.5},{:.5},1,1,1", c[0], c[1], c[2])
+        };
+        let mut rows: Vec<String> = parts.iter().map(|(m, c)| row("part", *m, *c)).collect();
+        let plain = rows.join("\n");
+        let head = "name,mass,Cx,Cy,Cz,Ixx,Iyy,Izz\n";
+        let table = read(&format!("{head}{plain}")).unwrap();
+        prop_assert_eq!(table.like_a_total(), None);
+        rows.insert(place.index(rows.len() + 1), row("craft", mass, [0, 1, 2].map(centre)));
+        let table = read(&format!("{head}{}", rows.join("\n"))).unwrap();
+        prop_assert_eq!(table.like_a_total().map(PartRow::name), Some("craft"));
+        let other = row("craft", mass, [centre(0) + 0.5, centre(1), centre(2)]);
+        let table = read(&format!("{head}{plain}\n{other}")).unwrap();
+        prop_assert_eq!(table.like_a_total(), None);
+    }
+}
+
+/// What would change the sum is not passed over, and what says nothing is.
+#[test]
+fn columns_that_would_change_a_row_are_refused() {
+    let with = |heading: &str, cell: &str, name: &str| {
+        let table =
+            format!("name,mass,Cx,Cy,Cz,Ixx,Iyy,Izz,{heading}\n{name},1,0,0,0,1,1,1,{cell}\n");
+        read(&table).map(|_| ()).map_err(|error| error.to_string())
+    };
+    for (heading, neutral, changing, why) in [
+        ("qty", "1", "100", "a row is one part"),
+        ("Quantity", "1.0", "2 off", "a row is one part"),
+        ("roll_deg", "0", "90", "angles are not read"),
+        ("rpy", "0 0 0", "0 1.57 0", "angles are not read"),
+        ("growth", "0 %", "1.1", "no growth allowance"),
+        ("MGA %", "0", "15%", "no growth allowance"),
+        ("margin policy", "AIAA", "10", "no growth allowance"),
+    ] {
+        assert_eq!(with(heading, neutral, "bus"), Ok(()), "{heading}");
+        assert_eq!(with(heading, "", "bus"), Ok(()), "{heading}");
+        let message = with(heading, changing, "bus").unwrap_err();
+        assert!(message.contains(why) && message.contains(heading), "{message}");
+    }
+    assert!(with("uncertainty", "5%", "bus").unwrap_err().contains("no standard deviation"));
+    // An assembly may be called a total; a part may not.
+    assert!(with("note", "", "Total").unwrap_err().contains("sums up others"));
+    let assembly =
+        "name,parent,mass,Cx,Cy,Cz,Ixx,Iyy,Izz\nTotal,,,,,,,,\nbus,Total,1,0,0,0,1,1,1\n";
+    assert_eq!(read(assembly).unwrap().rows().len(), 2);
+}

@@ -10,25 +10,77 @@ use crate::MAX_LENGTH;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(tag = "shape", rename_all = "snake_case", deny_unknown_fields))]
 pub(super) enum Kind {
-    SolidBox { sides_m: [f64; 3] },
-    BoxShell { sides_m: [f64; 3] },
-    Plate { sides_m: [f64; 2] },
-    Rod { length_m: f64 },
-    Cylinder { radius_m: f64, height_m: f64 },
-    Tube { inner_radius_m: f64, outer_radius_m: f64, height_m: f64 },
-    CylinderShell { radius_m: f64, height_m: f64 },
-    Disc { radius_m: f64 },
-    Sphere { radius_m: f64 },
-    HollowSphere { inner_radius_m: f64, outer_radius_m: f64 },
-    SphereShell { radius_m: f64 },
-    Hemisphere { radius_m: f64 },
-    HemisphereShell { radius_m: f64 },
-    Ellipsoid { semi_axes_m: [f64; 3] },
-    Cone { radius_m: f64, height_m: f64 },
-    ConeShell { radius_m: f64, height_m: f64 },
-    Frustum { base_radius_m: f64, top_radius_m: f64, height_m: f64 },
-    FrustumShell { base_radius_m: f64, top_radius_m: f64, height_m: f64 },
-    Torus { centre_line_radius_m: f64, section_radius_m: f64 },
+    #[cfg_attr(feature = "serde", serde(alias = "box"))]
+    SolidBox {
+        sides_m: [f64; 3],
+    },
+    BoxShell {
+        sides_m: [f64; 3],
+    },
+    Plate {
+        sides_m: [f64; 2],
+    },
+    Rod {
+        length_m: f64,
+    },
+    Cylinder {
+        radius_m: f64,
+        height_m: f64,
+    },
+    Tube {
+        inner_radius_m: f64,
+        outer_radius_m: f64,
+        height_m: f64,
+    },
+    CylinderShell {
+        radius_m: f64,
+        height_m: f64,
+    },
+    Disc {
+        radius_m: f64,
+    },
+    #[cfg_attr(feature = "serde", serde(alias = "ball"))]
+    Sphere {
+        radius_m: f64,
+    },
+    HollowSphere {
+        inner_radius_m: f64,
+        outer_radius_m: f64,
+    },
+    SphereShell {
+        radius_m: f64,
+    },
+    Hemisphere {
+        radius_m: f64,
+    },
+    HemisphereShell {
+        radius_m: f64,
+    },
+    Ellipsoid {
+        semi_axes_m: [f64; 3],
+    },
+    Cone {
+        radius_m: f64,
+        height_m: f64,
+    },
+    ConeShell {
+        radius_m: f64,
+        height_m: f64,
+    },
+    Frustum {
+        base_radius_m: f64,
+        top_radius_m: f64,
+        height_m: f64,
+    },
+    FrustumShell {
+        base_radius_m: f64,
+        top_radius_m: f64,
+        height_m: f64,
+    },
+    Torus {
+        centre_line_radius_m: f64,
+        section_radius_m: f64,
+    },
 }
 
 /// K_k/m as a factor times the square of a length.

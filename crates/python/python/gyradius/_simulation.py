@@ -8,6 +8,7 @@ import importlib
 import inspect
 import sys
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any, TypeAlias, Union
 
 Simulation: TypeAlias = Callable[..., Mapping[str, float]]
@@ -72,13 +73,23 @@ def described(simulation: Simulation) -> str:
         function = function.func
     if not hasattr(function, "__qualname__"):
         function = type(function)
-    name = f"{getattr(function, '__module__', None)}.{function.__qualname__}"
+    name = f"{_module_of(function)}.{function.__qualname__}"
     try:
         source = inspect.getsource(function)
     except (OSError, TypeError):
         return name[:LONGEST]
     said = f"{SOURCE}{hashlib.sha256(source.encode()).hexdigest()[:16]}"
     return name[: LONGEST - len(said)] + said
+
+
+def _module_of(function: Any) -> str | None:
+    """Its module, by the name that an import gives it: a program's own is called otherwise, and otherwise again in its children."""
+    name: str | None = getattr(function, "__module__", None)
+    if name not in ("__main__", "__mp_main__"):
+        return name
+    module = sys.modules.get(name)
+    spec, file = getattr(module, "__spec__", None), getattr(module, "__file__", None)
+    return spec.name if spec else Path(file).stem if file else "__main__"
 
 
 def progress_of(progress: Any) -> tuple[Callable[[int, int], object] | None, Callable[[], object]]:

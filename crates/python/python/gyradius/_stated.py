@@ -29,7 +29,7 @@ def law(
 ) -> StatedLaw:
     """The law of mass, mass centre and inertia that plain statements make about a body.
 
-    A statement more does not change what the others draw. What nothing is said of stays as it is, but the inertia follows the
+    There must be one statement or more. One more does not change what the others draw. What nothing is said of stays as it is, but the inertia follows the
     mass. Every draw is a body.
 
     Parameters
@@ -165,6 +165,11 @@ EXAMPLES = {"mass": "5%", "centre": "5mm", "moments": "10%", "products": "0.1kgm
 
 
 def _statements(mass: Any, centre: Any, moments: Any, products: Any, axes: Any, sigmas: float) -> _core.StatementsCore:
+    if all(value is None for value in (mass, centre, moments, products, axes)):
+        raise ValueError(
+            'nothing is stated: mass="10%", centre="5mm", moments="15%" and axes="5deg" say what is uncertain'
+        )
+
     def said(name: str, value: Any) -> str | None:
         if value is None:
             return None

@@ -20,7 +20,7 @@ pub(super) fn picked(
             None => {
                 let some: Vec<&str> = links.iter().take(20).copied().collect();
                 let more = if links.len() > some.len() { ", …" } else { "" };
-                format!("the links with inertia are {}{more}", some.join(", "))
+                format!("no link matches it; the links with inertia are {}{more}", some.join(", "))
             }
         };
         return Err(RobotDrawError::Pattern { pattern: pattern.clone(), why });
@@ -91,7 +91,7 @@ mod tests {
         let error = |patterns| pick(patterns).unwrap_err().to_string();
         assert_eq!(
             error(&["arm*", "leg"]),
-            "--links leg: the links with inertia are arm_1, arm_2, base"
+            "--links leg: no link matches it; the links with inertia are arm_1, arm_2, base"
         );
         assert_eq!(error(&["fr*"]), "--links fr*: the file states no inertia for \"frame\"");
     }

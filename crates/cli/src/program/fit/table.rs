@@ -21,6 +21,10 @@ pub(super) enum TableError {
          `gyradius check` lists them)"
     )]
     Impossible { place: String, index: usize, reason: String, more: String },
+    #[error(
+        "{place}: the row says {label:?}, and one that sums up others is no sample: it must be left out of the table"
+    )]
+    Summary { place: String, label: String },
     #[error("{place}: {error}")]
     Ten { place: String, error: TenTableError },
     #[error(
@@ -87,6 +91,9 @@ pub(super) fn read(
     let mut refused: Option<(usize, &FileBody, String)> = None;
     for (index, body) in file.bodies().iter().enumerate() {
         let at = || format!("{place}:{}", body.line());
+        if let Some(label) = body.summary() {
+            return Err(TableError::Summary { place: at(), label: label.to_owned() });
+        }
         let mut matrix = *body.inertia().map_err(|error| row_error(at(), &error))?;
         let mut of = None;
         if let Some((ten, form)) = &ten {

@@ -8,6 +8,7 @@ use gyradius_study::{AnyScenario, Fleet, Options};
 use std::{
     env,
     error::Error,
+    ffi::OsString,
     fs,
     io::{self, Write},
     path::{Path, PathBuf, absolute},
@@ -23,8 +24,8 @@ use crate::program::{
 use script::{Limits, Script};
 use shards::{LARGEST_ARRAY, choose};
 
-/// Runs the verb.
-pub(crate) fn slurm(arguments: &SlurmArgs) -> Result<(), Box<dyn Error>> {
+/// Runs the verb, in a program that certain words call.
+pub(crate) fn slurm(arguments: &SlurmArgs, called: Vec<OsString>) -> Result<(), Box<dyn Error>> {
     let scenario = stated(&arguments.scenario)?;
     if let Some(file) = &arguments.scenario.file {
         stays(file)?;
@@ -34,7 +35,7 @@ pub(crate) fn slurm(arguments: &SlurmArgs) -> Result<(), Box<dyn Error>> {
             "warning: no run can be done on this machine, nor on any that is like it: {problem}"
         ));
     }
-    let script = script(arguments, &scenario)?.to_string();
+    let script = script(arguments, called, &scenario)?.to_string();
     let Some(path) = file_of(arguments.output.as_deref()) else {
         return Ok(to_standard_output(&script)?);
     };
@@ -49,7 +50,11 @@ pub(crate) fn slurm(arguments: &SlurmArgs) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn script(arguments: &SlurmArgs, scenario: &AnyScenario) -> Result<Script, Box<dyn Error>> {
+fn script(
+    arguments: &SlurmArgs,
+    called: Vec<OsString>,
+    scenario: &AnyScenario,
+) -> Result<Script, Box<dyn Error>> {
     let threads = arguments.threads;
     let (shards, forecast) = match (arguments.shards, &arguments.time) {
         // Nothing else depends on the time.
@@ -103,7 +108,7 @@ fn script(arguments: &SlurmArgs, scenario: &AnyScenario) -> Result<Script, Box<d
     Ok(Script {
         name: scenario.name().to_owned(),
         models,
-        program: env::current_exe()?,
+        program: if called.is_empty() { vec![env::current_exe()?.into()] } else { called },
         folder: env::current_dir()?,
         scenario: arguments.scenario.file.as_deref().map(place).transpose()?,
         runs: scenario.runs(),

@@ -1,6 +1,11 @@
 //! The script itself: a job array of shards, and the report that waits for it.
 
-use std::{ffi::OsStr, fmt, path::PathBuf, time::Duration};
+use std::{
+    ffi::{OsStr, OsString},
+    fmt,
+    path::PathBuf,
+    time::Duration,
+};
 
 use crate::program::quote::quote;
 
@@ -18,7 +23,7 @@ const LONGEST: u64 = 525_600;
 pub(super) struct Script {
     pub(super) name: String,
     pub(super) models: u64,
-    pub(super) program: PathBuf,
+    pub(super) program: Vec<OsString>,
     /// Where the program is called.
     pub(super) folder: PathBuf,
     pub(super) scenario: Option<PathBuf>,
@@ -70,9 +75,14 @@ fn flag(name: &str, value: impl AsRef<OsStr>) -> String {
 }
 
 impl Script {
+    /// What calls the program.
+    fn program(&self) -> String {
+        self.program.iter().map(|word| quote(word)).collect::<Vec<_>>().join(" ")
+    }
+
     /// The command of a task, but for the number of its shard.
     fn study(&self) -> String {
-        let mut text = format!("{} study", quote(self.program.as_os_str()));
+        let mut text = format!("{} study", self.program());
         text.extend(self.scenario.iter().map(|file| flag("scenario", file)));
         text += &match self.vehicles {
             Some(vehicles) => format!(" --vehicles={vehicles}"),
@@ -84,8 +94,7 @@ impl Script {
 
     /// The command that makes the report.
     fn report(&self) -> String {
-        let [program, out] = [&self.program, &self.out].map(|path| quote(path.as_os_str()));
-        format!("{program} report -- {out}")
+        format!("{} report -- {}", self.program(), quote(self.out.as_os_str()))
     }
 
     /// What both jobs tell sbatch.
@@ -109,11 +118,18 @@ impl fmt::Display for Script {
         let time = self
             .shard_time
             .map(|time| format!(", each of which takes about {} min", minutes(time)));
+        let count = |count: u64, what: &str| match count {
+            1 => format!("one {what}"),
+            _ => format!("{count} {what}s"),
+        };
+        let (of, parts) =
+            (if *models == 1 { "" } else { "each of " }, count((*shards).into(), "shard"));
+        let models = count(*models, "model");
         let most = self.max_tasks.map(|most| format!("%{most}")).unwrap_or_default();
         write!(
             f,
             r#"#!/bin/bash
-# A study on a Slurm cluster: {name}, {runs} runs of each of {models} models, in {shards} shards{time}.
+# A study on a Slurm cluster: {name}, {runs} runs of {of}{models}, in {parts}{time}.
 # Written by gyradius {version}. `bash` and the name of this file submit it. Submitted again once its jobs have ended, it does
 # what is missing, and nothing again that is finished.
 set -euo pipefail

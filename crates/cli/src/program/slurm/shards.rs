@@ -11,7 +11,7 @@ const LEAST: Duration = Duration::from_secs(60);
 
 /// How many shards a study has that takes so long in one process, and whose smallest shard, if there are so many, takes so long.
 pub(super) fn choose(total: Duration, smallest: &dyn Fn(u32) -> Duration) -> u32 {
-    let most = (total.as_secs_f64() / AIM.as_secs_f64()) as u32;
+    let most = (total.as_secs_f64() / AIM.as_secs_f64()).round() as u32;
     (2..=most.min(LARGEST_ARRAY)).rev().find(|shards| smallest(*shards) >= LEAST).unwrap_or(1)
 }
 
