@@ -124,8 +124,8 @@ fn the_sign_of_products_is_never_guessed() {
 fn what_a_row_lacks_is_named() {
     for (text, expected) in [
         ("", "it is empty"),
-        ("mass,x\n", "line 1: there is no column name"),
-        ("name,parent\n", "line 1: there is no column mass"),
+        ("mass,x\n", "line 1: no column is called name or id"),
+        ("name,parent\n", "line 1: no column is called mass"),
         ("name,mass,Mass [kg]\na,1,2\n", "line 1: columns \"mass\" and \"Mass [kg]\" say"),
         ("name,mass,mass\na,1,2\n", "line 1: columns \"mass\" and \"mass\" say the same"),
         ("name,mass,sigma_mess\na,1,2\n", "line 1: column \"sigma_mess\" is no standard deviation"),
@@ -253,8 +253,8 @@ fn errors_of_edges_are_told_apart() {
     for (edges, expected) in [
         ("", "it is empty"),
         ("a\0", "it is binary"),
-        ("a,b\nc,d\n", "line 1: there is no column child"),
-        ("child\na\n", "line 1: there is no column parent"),
+        ("a,b\nc,d\n", "line 1: no column is called child"),
+        ("child\na\n", "line 1: no column is called parent"),
         ("child,parent\na\n", "line 2: the row has 1 values: there must be 2"),
         ("child,parent\n\na,b,c\n", "line 3: the row has 3 values: there must be 2"),
         ("child,parent\na,\n", "line 2: parent is missing"),
