@@ -236,6 +236,22 @@ mod tests {
         }
     }
 
+    /// Close to √2 many draws are as flat as rounding can tell, where the density has no bound: as many as the documentation says.
+    #[test]
+    fn flat_draws_of_wide_laws_have_an_infinite_density() {
+        const N: usize = 5000;
+        for (delta, low, high) in [(1.2, 0.0, 0.0), (1.4, 0.27, 0.31)] {
+            let law = Wishart::new(payload(), delta).unwrap();
+            let mut rng = ChaCha8Rng::seed_from_u64(3);
+            let flat = (0..N).filter(|_| {
+                let drawn: Inertia = law.sample(&mut rng);
+                law.ln_density(drawn.as_inertia_matrix()) == Some(f64::INFINITY)
+            });
+            let share = flat.count() as f64 / N as f64;
+            assert!((low..=high).contains(&share), "{delta}: {share}");
+        }
+    }
+
     /// −E ln det G = Σ_i (ln(p/2) − ψ((p − i)/2)), which no other law of that mean and δ shares.
     #[test]
     fn the_determinant_is_a_product_of_chi_squares() {

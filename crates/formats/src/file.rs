@@ -230,6 +230,7 @@ mod tests {
         assert_eq!(format("a.world", "<part/>"), Format::Sdf);
         assert_eq!(format("robot", "<robot/>"), Format::Urdf);
         assert_eq!(format("a.Csv", "ixx,iyy,izz"), Format::Csv);
+        assert_eq!(format("a.TSV", "ixx\tiyy\tizz"), Format::Csv);
     }
 
     #[test]

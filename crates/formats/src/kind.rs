@@ -37,7 +37,7 @@ impl fmt::Display for Format {
 /// Extensions of files that hold inertias and little else.
 const ROBOTS: [&str; 5] = ["urdf", "xacro", "mjcf", "sdf", "world"];
 /// Extensions of files that may hold anything.
-const GENERIC: [&str; 4] = ["xml", "csv", "toml", "json"];
+const GENERIC: [&str; 5] = ["xml", "csv", "tsv", "toml", "json"];
 
 /// Extensions of files that may hold inertias and are not read, and the name of their format.
 const NOT_READ: [(&str, &str); 7] = [
@@ -56,10 +56,13 @@ fn extension(path: &Path) -> Option<&str> {
     path.extension()?.to_str()
 }
 
-/// The extension of a file in lower case, if it is one of those that are read.
+/// The extension of a file in lower case, if it is one of those that are read; that of tables is one, whatever stands between
+/// their columns.
 pub(crate) fn known_extension(path: &Path) -> Option<&'static str> {
     let extension = extension(path)?;
-    ROBOTS.iter().chain(&GENERIC).find(|known| known.eq_ignore_ascii_case(extension)).copied()
+    let known = ROBOTS.iter().chain(&GENERIC);
+    let known = known.copied().find(|known| known.eq_ignore_ascii_case(extension));
+    known.map(|known| if known == "tsv" { "csv" } else { known })
 }
 
 /// Whether a file of this extension, or of none, may hold anything.

@@ -48,7 +48,7 @@ impl TenMomentsFile {
         let text = read_text(path, MAX_TOML_BYTES as u64)?;
         let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
         let fields = match extension.to_str().unwrap_or_default() {
-            "csv" => return Self::from_csv(&text),
+            "csv" | "tsv" => return Self::from_csv(&text),
             "toml" => toml::from_str(&text).map_err(|e| malformed(e.message()))?,
             "json" => {
                 serde_json::from_str::<Fields>(&text).map_err(|e| malformed(&e.to_string()))?

@@ -182,7 +182,8 @@ class MassPropertiesLaw(LawOfBodies):
     def logpdf(self, bodies: MassProperties | ArrayLike) -> Any:
         """ln of the density with respect to dm d³c d⁶I in kg, m and kg·m², -inf of what no draw can be.
 
-        A `ValueError` if the law has no density that is known.
+        A mass that does not scatter, and a coordinate of the mass centre that does not, are left out of dm d³c: two laws can be
+        compared by it only if the same numbers scatter in both. A `ValueError` if the law has no density that is known.
         """
         flat, lead = rows("bodies", bodies, (10,))
         return out(known(self, "density", self._core.ln_density(flat)), lead)
