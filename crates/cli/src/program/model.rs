@@ -38,7 +38,8 @@ struct Stated {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Nominal {
-    inertia_kg_m2: [[f64; 3]; 3],
+    inertia_kg_m2: Option<[[f64; 3]; 3]>,
+    radii_of_gyration_m: Option<[f64; 3]>,
     mass_kg: Option<f64>,
     #[serde(default)]
     mass_centre_m: [f64; 3],
@@ -111,9 +112,18 @@ pub(crate) fn model(arguments: &ModelArgs) -> Result<(), Box<dyn Error>> {
 fn stated(text: &str) -> Result<Told, String> {
     let Stated { nominal, moments, products, axes, mass, centre, inside } =
         parse_toml(text).map_err(|error| error.to_string())?;
-    let Nominal { inertia_kg_m2, mass_kg, mass_centre_m } = nominal;
-    let inertia = Inertia::try_from(inertia_kg_m2)
-        .map_err(|error| format!("nominal.inertia_kg_m2: {error}"))?;
+    let Nominal { inertia_kg_m2, radii_of_gyration_m, mass_kg, mass_centre_m } = nominal;
+    let (key, rows) = match (inertia_kg_m2, radii_of_gyration_m, mass_kg) {
+        (Some(rows), None, _) => ("inertia_kg_m2", rows),
+        (None, Some(radii), Some(mass)) => ("radii_of_gyration_m", of_radii(mass, radii)?),
+        (None, Some(_), None) => {
+            return Err("nominal.radii_of_gyration_m: it needs nominal.mass_kg".to_owned());
+        }
+        (Some(_), Some(_), _) | (None, None, _) => {
+            return Err("nominal: it must have inertia_kg_m2, or mass_kg and radii_of_gyration_m, and not both".to_owned());
+        }
+    };
+    let inertia = Inertia::try_from(rows).map_err(|error| format!("nominal.{key}: {error}"))?;
     let statements = Statements { moments, products, axes, mass, centre };
     let model = statements
         .check(&inertia, mass_kg)
@@ -132,6 +142,25 @@ fn stated(text: &str) -> Result<Told, String> {
         body = Some(open.inside(region).map_err(|error| format!("inside: {error}"))?);
     }
     Ok(Told { model, body })
+}
+
+/// The inertia of a mass with these radii of gyration about the body axes, m k².
+fn of_radii(mass_kg: f64, radii: [f64; 3]) -> Result<[[f64; 3]; 3], String> {
+    if let Some(radius) = radii.iter().find(|radius| !(**radius >= 0.0 && radius.is_finite())) {
+        return Err(format!(
+            "nominal.radii_of_gyration_m: {radius:?}: it must be a finite number, and not negative"
+        ));
+    }
+    if !(mass_kg > 0.0 && mass_kg.is_finite()) {
+        return Err(format!(
+            "nominal.mass_kg: {mass_kg:?}: it must be a finite number, and positive"
+        ));
+    }
+    let mut rows = [[0.0; 3]; 3];
+    for (axis, radius) in radii.into_iter().enumerate() {
+        rows[axis][axis] = mass_kg * radius * radius;
+    }
+    Ok(rows)
 }
 
 /// The inertia at the nominal mass, the mass that it goes with, the mass centre, and the region, from the nominal mass

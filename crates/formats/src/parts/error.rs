@@ -202,8 +202,8 @@ pub enum PartsProblem {
     },
     /// Neither inertia nor shape.
     #[error(
-        "there is no inertia: the row must have ixx, iyy and izz, a shape with its sizes, or the shape \
-         \"point\""
+        "there is no inertia: the row must have ixx, iyy and izz, the radii of gyration kx, ky and kz, a shape with its \
+         sizes, or the shape \"point\""
     )]
     NoInertia,
     /// Both inertia and shape.

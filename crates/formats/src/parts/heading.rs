@@ -14,6 +14,9 @@ use crate::{
 pub(crate) const VALUES: [&str; 10] =
     ["mass", "centre_x", "centre_y", "centre_z", "ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
 
+/// The radii of gyration, as messages call them.
+pub(super) const GYRATION: [&str; 3] = ["kx", "ky", "kz"];
+
 /// Their standard deviations, and those of three at once, as messages call them: absolute, and in percent.
 const DEVIATIONS: [(Group, &str, &str); 13] = [
     (Group(0, 1), "sigma_mass", "mass_percent"),
@@ -54,6 +57,8 @@ pub(crate) enum Column {
     Attitude(usize),
     /// One of the ten, and its unit in SI, if one is stated.
     Value(usize, Option<f64>),
+    /// The radius of gyration about an axis, and its unit in SI, if one is stated.
+    Gyration(usize, Option<f64>),
     /// The standard deviation of some of the ten.
     Deviation(Group, Scale),
 }
@@ -157,6 +162,7 @@ impl Column {
     fn unit(&mut self) -> Option<(Dimension, &mut Option<f64>)> {
         match self {
             Self::Value(i, unit) => Some((Group(*i, 1).dimension(), unit)),
+            Self::Gyration(_, unit) => Some((Dimension::Length, unit)),
             Self::Deviation(group, Scale::Unit(unit)) => Some((group.dimension(), unit)),
             Self::Deviation(_, Scale::Percent)
             | Self::Name
@@ -260,6 +266,9 @@ impl Heading {
         if let Some(Self::Column(column)) = found {
             return Self::Column(column);
         }
+        if let Some(radius) = gyration(text) {
+            return radius;
+        }
         if let Some(unread) = Unread::of(text) {
             return Self::Unread(unread);
         }
@@ -326,6 +335,28 @@ fn word(plain: &str) -> Option<Column> {
         "attitudez" | "qz" => Some(Column::Attitude(2)),
         "attitudew" | "qw" => Some(Column::Attitude(3)),
         _ => None,
+    }
+}
+
+/// A radius of gyration: `kx_m`, `Ky [in]`, `radius of gyration z`.
+fn gyration(text: &str) -> Option<Heading> {
+    let axis = |plain: &str| match plain {
+        "x" | "xx" | "1" => Some(0),
+        "y" | "yy" | "2" => Some(1),
+        "z" | "zz" | "3" => Some(2),
+        _ => None,
+    };
+    let known = |plain: &str| {
+        let before = ["radiusofgyration", "gyrationradius", "gyradius", "rg", "k"];
+        before.iter().find_map(|word| axis(plain.strip_prefix(word)?))
+    };
+    let (axis, tail) = longest_name(text, known)?;
+    match tail.unit(Dimension::Length)? {
+        Ok(unit) => {
+            let stated = (!unit.text.is_empty()).then_some(unit.si);
+            Some(Heading::Column(Column::Gyration(axis, stated)))
+        }
+        Err(bad) => bad.is_certain.then_some(Heading::SizeUnit(GYRATION[axis], bad)),
     }
 }
 
@@ -441,6 +472,11 @@ mod tests {
             ("uncertainty", Heading::NoDeviation),
             ("Tolerance [kg]", Heading::NoDeviation),
             ("tolerance class", Heading::Other),
+            ("kx_mm", Heading::Column(Column::Gyration(0, Some(1e-3)))),
+            ("Kyy", Heading::Column(Column::Gyration(1, None))),
+            ("Radius of gyration Z [m]", Heading::Column(Column::Gyration(2, Some(1.0)))),
+            ("kg", Heading::Other),
+            ("k2 screws", Heading::Other),
             ("Qty", Heading::Unread(Unread::Count)),
             ("quantity [-]", Heading::Unread(Unread::Count)),
             ("No. off", Heading::Unread(Unread::Count)),

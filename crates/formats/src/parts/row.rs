@@ -5,7 +5,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde_json::{Map, Value};
 
 use super::error::{PartsError, PartsFile, PartsProblem};
-use super::heading::{self, Column, Group, Heading, Scale, VALUES};
+use super::heading::{self, Column, GYRATION, Group, Heading, Scale, VALUES};
 use crate::{
     FileBodyError, Products,
     body::{Number, shortened},
@@ -108,7 +108,7 @@ impl PartNumbers {
         self.deviations
     }
 
-    /// Whether the inertia is proportional to the mass: that of a shape is, unless the row says no.
+    /// Whether the inertia is proportional to the mass: that of a shape or of radii of gyration is, unless the row says no.
     #[must_use]
     pub fn inertia_follows_mass(&self) -> bool {
         self.inertia_follows_mass
@@ -175,6 +175,7 @@ impl Cells<'_> {
         let says = |heading: &Heading| match heading {
             Heading::Column(
                 Column::Value(..)
+                | Column::Gyration(..)
                 | Column::Deviation(..)
                 | Column::Shape
                 | Column::Attitude(_)
@@ -217,7 +218,7 @@ impl Cells<'_> {
             .map_err(|error| PartsProblem::Shape { message: error.to_string() })?;
         let nominal = [mass_kg, x, y, z, i11, i22, i33, i12, i13, i23];
         let inertia_follows_mass = match self.text(Column::Follows) {
-            None => matches!(shape, Some(Some(_))),
+            None => matches!(shape, Some(Some(_))) || self.gyration(mass_kg)?.is_some(),
             Some(word) => boolean("inertia_follows_mass", word)?,
         };
         Ok(Some(PartNumbers {
@@ -270,6 +271,13 @@ impl Cells<'_> {
         mass_kg: f64,
         given: [Option<f64>; 6],
     ) -> Result<[f64; 6], PartsProblem> {
+        if let Some(moments) = self.gyration(mass_kg)? {
+            if given.iter().any(Option::is_some) || shape.is_some() {
+                return Err(PartsProblem::Twice { field: "the inertia" });
+            }
+            let [a, b, c] = moments;
+            return Ok([a, b, c, 0.0, 0.0, 0.0]);
+        }
         let any = given.iter().flatten().any(|entry| *entry != 0.0);
         match shape {
             Some(shape) if any => {
@@ -303,6 +311,33 @@ impl Cells<'_> {
             (None, None) => {}
         }
         Ok(six)
+    }
+
+    /// The moments m k² of the radii of gyration, if there are any.
+    fn gyration(&self, mass_kg: f64) -> Result<Option<[f64; 3]>, PartsProblem> {
+        let mut found = [None; 3];
+        let of = |heading: &Heading| match heading {
+            Heading::Column(Column::Gyration(axis, unit)) => Some((*axis, unit.unwrap_or(1.0))),
+            _ => None,
+        };
+        for ((axis, si), cell) in self.given(of) {
+            let field = GYRATION[axis];
+            if found[axis].is_some() {
+                return Err(PartsProblem::Twice { field });
+            }
+            let value = Number::parse(field, cell, None)?.value * si;
+            if !(value >= 0.0) {
+                return Err(PartsProblem::Value { field, value, allowed: "zero or more" });
+            }
+            found[axis] = Some(mass_kg * value * value);
+        }
+        if found.iter().all(Option::is_none) {
+            return Ok(None);
+        }
+        match found.iter().position(Option::is_none) {
+            Some(axis) => Err(FileBodyError::Missing { field: GYRATION[axis] }.into()),
+            None => Ok(Some(found.map(Option::unwrap_or_default))),
+        }
     }
 
     /// Ten standard deviations in SI units.

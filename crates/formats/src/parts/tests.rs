@@ -564,3 +564,35 @@ fn columns_that_would_change_a_row_are_refused() {
         "name,parent,mass,Cx,Cy,Cz,Ixx,Iyy,Izz\nTotal,,,,,,,,\nbus,Total,1,0,0,0,1,1,1\n";
     assert_eq!(read(assembly).unwrap().rows().len(), 2);
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(100))]
+
+    /// Radii of gyration say what moments do, in any unit, and their inertia follows the mass.
+    #[test]
+    fn radii_of_gyration_are_moments(
+        mass in 0.1..1e3_f64,
+        radii in proptest::array::uniform3(0.01..10.0_f64),
+        names in proptest::sample::select(vec![
+            ["kx", "ky", "kz"], ["k1", "k2", "k3"], ["Kxx", "Kyy", "Kzz"],
+            ["radius of gyration x", "radius of gyration y", "radius of gyration z"],
+        ]),
+        (unit, si) in proptest::sample::select(vec![("m", 1.0), ("mm", 1e-3), ("in", 0.0254)]),
+    ) {
+        let [kx, ky, kz] = names;
+        let [a, b, c] = radii;
+        let text = format!("name,mass,Cx [{unit}],Cy [{unit}],Cz [{unit}],{kx} [{unit}],{ky} [{unit}],{kz} [{unit}]\nit,{mass},0,0,0,{a},{b},{c}\n");
+        let table = read(&text).unwrap_or_else(|error| panic!("{text}{error}"));
+        let numbers = table.rows()[0].numbers().unwrap();
+        for (found, radius) in numbers.inertia().entries().into_iter().zip(radii) {
+            prop_assert!((found / (mass * radius * radius * si * si) - 1.0).abs() < 1e-12, "{}", text);
+        }
+        prop_assert!(numbers.inertia_follows_mass());
+        // Not beside moments, and all three.
+        let head = "name,mass,Cx,Cy,Cz,kx,ky,kz,ixx,iyy,izz\n";
+        let message = read(&format!("{head}it,1,0,0,0,1,1,1,1,1,1\n")).unwrap_err().to_string();
+        prop_assert!(message.contains("given twice"), "{}", message);
+        let message = read(&format!("{head}it,1,0,0,0,1,,1,,,\n")).unwrap_err().to_string();
+        prop_assert!(message.contains("ky is missing"), "{}", message);
+    }
+}

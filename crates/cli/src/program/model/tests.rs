@@ -210,3 +210,28 @@ fn every_file_gives_the_joint_law() {
         assert!(error.contains("mass_kg"), "{error}");
     }
 }
+
+/// Radii of gyration are another way to say an inertia without products, and one way must be taken.
+#[test]
+fn radii_of_gyration_are_moments() {
+    let rest = "[mass]\npercent = 5.0\nsigmas = 1\n";
+    let told = |nominal: &str| stated(&format!("[nominal]\n{nominal}\n{rest}"));
+    let radii = told("mass_kg = 10.0\nradii_of_gyration_m = [0.5, 0.6, 0.7]").unwrap();
+    let rows = "inertia_kg_m2 = [[2.5, 0.0, 0.0], [0.0, 3.5999999999999996, 0.0], [0.0, 0.0, 4.8999999999999995]]";
+    let moments = told(&format!("mass_kg = 10.0\n{rows}")).unwrap();
+    assert_eq!(radii.model.implied().deviations(), moments.model.implied().deviations());
+    for (nominal, why) in [
+        ("radii_of_gyration_m = [0.5, 0.6, 0.7]", "it needs nominal.mass_kg"),
+        ("mass_kg = 10.0", "must have inertia_kg_m2, or mass_kg and radii_of_gyration_m"),
+        (
+            "mass_kg = 10.0\nradii_of_gyration_m = [0.5, 0.6, 2.0]",
+            "nominal.radii_of_gyration_m: no body has this inertia",
+        ),
+        ("mass_kg = 10.0\nradii_of_gyration_m = [0.5, -0.6, 0.7]", "-0.6: it must be"),
+        ("mass_kg = -10.0\nradii_of_gyration_m = [0.5, 0.6, 0.7]", "nominal.mass_kg: -10.0"),
+        (&format!("mass_kg = 10.0\nradii_of_gyration_m = [0.5, 0.6, 0.7]\n{rows}"), "and not both"),
+    ] {
+        let message = told(nominal).unwrap_err();
+        assert!(message.contains(why), "{nominal}: {message}");
+    }
+}
