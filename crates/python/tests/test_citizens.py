@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import doctest
 import importlib
+import json
 import multiprocessing
 import os
 import pickle
@@ -16,6 +17,7 @@ import threading
 import time
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -258,6 +260,19 @@ def test_the_pages(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     assert bool(told) == any("gyradius.load(" in block for block in blocks)
     if page == "README.md":
         assert set(names["draws"]) == {"forearm", "hand"}  # type: ignore[call-overload]
+
+
+def test_the_laws_of_an_estimate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = (Path(__file__).parents[3] / "docs" / "fit.md").read_text()
+    (tmp_path / "phi.json").write_text(text.split("```json\n")[1].split("```")[0])
+    fit = [sys.executable, "-m", "gyradius", "fit", "--estimate", "phi.json", "-o", "law.json"]
+    subprocess.run(fit, cwd=tmp_path, check=True, capture_output=True)
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    exec(text.split("```python\n")[1].split("```")[0], names)
+    estimate = json.loads((tmp_path / "phi.json").read_text())
+    assert np.allclose(names["exact"].linear_moments[0], estimate["mean"], rtol=1e-6, atol=1e-9)
+    assert names["bodies"].shape == (4096,) and isinstance(names["joint"], gyradius.MassPropertiesLaw)
 
 
 def test_the_picture_of_the_readme() -> None:
