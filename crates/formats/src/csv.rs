@@ -35,8 +35,10 @@ pub(crate) fn read(text: &Text, default: Products) -> Result<Vec<FileBody>, Refu
             let (found, allowed) = (row.len(), header.row.len());
             Err(FileBodyError::Count { field: "the row", found, allowed })
         };
-        let mut cells = row.iter().map(|field| field.of(text.as_str()).trim());
-        let summary = cells.find(|cell| is_summary(cell));
+        // In the column of names, or the first one, as of an index.
+        let first = row.first().map(|field| field.of(text.as_str()));
+        let labels = [cell(NAME).map(|(name, _)| name), first];
+        let summary = labels.into_iter().flatten().map(str::trim).find(|cell| is_summary(cell));
         bodies.push(FileBody::new(name, line, reading).summing_up(summary));
     }
     Ok(bodies)

@@ -44,7 +44,7 @@ pub(crate) fn has_word(heading: &str) -> bool {
 
 /// Whether it speaks of nothing else, so that nobody knows of which number: `uncertainty`, `tolerance [kg]`.
 pub(crate) fn is_alone(heading: &str) -> bool {
-    const SURE: [&str; 10] = [
+    const SURE: [&str; 12] = [
         "uncertainty",
         "unc",
         "tolerance",
@@ -55,12 +55,15 @@ pub(crate) fn is_alone(heading: &str) -> bool {
         "stddev",
         "deviation",
         "variance",
+        "error",
+        "accuracy",
     ];
     const BESIDE: [&str; 9] = ["standard", "kg", "g", "lb", "m", "mm", "in", "1", "3"];
     let lower = heading.to_lowercase();
     let words = || words(&lower).filter(|word| !word.is_empty());
     words().any(|word| SURE.contains(&word))
-        && words().all(|word| WORDS.contains(&word) || BESIDE.contains(&word))
+        && words()
+            .all(|word| SURE.contains(&word) || WORDS.contains(&word) || BESIDE.contains(&word))
 }
 
 /// The words of a heading.

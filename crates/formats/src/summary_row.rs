@@ -64,6 +64,25 @@ pub(crate) fn is_summary(cell: &str) -> bool {
     deviation || words().any(is_key) && words().all(|word| is_key(word) || BESIDE.contains(&word))
 }
 
+/// Whether a name speaks of a sum, and may be that of a part all the same: `Bus subtotal`, `total pressure sensor`.
+pub(crate) fn speaks_of_sums(name: &str) -> bool {
+    const SUMS: [&str; 11] = [
+        "total",
+        "totals",
+        "subtotal",
+        "subtotals",
+        "sum",
+        "average",
+        "mean",
+        "gesamt",
+        "totale",
+        "somme",
+        "mass",
+    ];
+    let lower = name.to_lowercase();
+    lower.split(|c: char| !c.is_alphanumeric()).any(|word| SUMS.contains(&word))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

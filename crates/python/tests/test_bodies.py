@@ -221,3 +221,21 @@ def test_zeros_of_either_sign_and_masses() -> None:
             one.with_mass(bad)
     with pytest.raises(ValueError, match="mass"):
         MassProperties(0.0, np.zeros(3), np.eye(3)).with_mass(1.0)
+
+
+def test_tables_with_the_ten_in_another_order_are_refused() -> None:
+    some = bodies(np.random.default_rng(1), 5).array
+
+    class Table:
+        """As that of pandas: an array with names."""
+
+        def __init__(self, order: list[int]) -> None:
+            self.columns = [gyradius.COLUMNS[i] for i in order]
+            self.order = order
+
+        def __array__(self, dtype: object = None, copy: object = None) -> np.ndarray:
+            return some[:, self.order]
+
+    assert MassProperties.of(Table(list(range(10)))).array.tolist() == some.tolist()
+    with pytest.raises(ValueError, match="order of gyradius.COLUMNS"):
+        MassProperties.of(Table(list(range(9, -1, -1))))

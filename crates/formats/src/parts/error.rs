@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::heading::Unread;
+use super::unread::Unread;
 use crate::{FileBodyError, FileProblem, UnitError, body::shortened, error::Refusal};
 
 /// How many headings a message names.
@@ -125,6 +125,9 @@ fn because(what: Unread) -> &'static str {
             "angles are not read, for their order is not known: a part that is turned must have the quaternion of its attitude in \
              attitude_x, attitude_y, attitude_z and attitude_w; the column must be empty or 0"
         }
+        Unread::Unit => {
+            "units are those of a column, and must stand in its heading or in a row below the header"
+        }
         Unread::Growth => {
             "no growth allowance is added: the mass and the inertia must have it in them; the column must be empty or 0"
         }
@@ -170,6 +173,16 @@ pub enum PartsProblem {
         heading: String,
         /// The cell.
         value: String,
+    },
+    /// A unit in the row below the header, of a column that cannot have it.
+    #[error("column {heading:?} has the unit {unit:?} below it: it must be {allowed}")]
+    UnitBelow {
+        /// The heading.
+        heading: String,
+        /// The unit.
+        unit: String,
+        /// What is allowed.
+        allowed: &'static str,
     },
     /// A row that sums up others.
     #[error(

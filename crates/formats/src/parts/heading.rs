@@ -2,6 +2,7 @@
 
 use gyradius_inertia::Shape;
 
+use super::unread::Unread;
 use crate::{
     body::entry_of,
     heading_sign::without_sign,
@@ -97,66 +98,6 @@ pub(crate) enum Heading {
     Other,
 }
 
-/// What would change the numbers of a row, and is not read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unread {
-    /// How many parts a row is.
-    Count,
-    /// An angle by which the part is turned.
-    Turn,
-    /// A growth allowance of the mass.
-    Growth,
-}
-
-impl Unread {
-    /// What a heading holds of this kind.
-    fn of(text: &str) -> Option<Self> {
-        const COUNT: [&str; 11] = [
-            "qty",
-            "quantity",
-            "count",
-            "pcs",
-            "pieces",
-            "multiplicity",
-            "instances",
-            "numberof",
-            "nooff",
-            "numberoff",
-            "noofparts",
-        ];
-        const TURN: [&str; 12] = [
-            "roll", "pitch", "yaw", "euler", "rpy", "rotx", "roty", "rotz", "rotation", "rx", "ry",
-            "rz",
-        ];
-        const GROWTH: [&str; 4] = ["mga", "growth", "contingency", "margin"];
-        let lower = text.to_lowercase();
-        let words: Vec<&str> = spread::words(&lower).filter(|word| !word.is_empty()).collect();
-        if words.iter().any(|word| GROWTH.contains(word)) {
-            return Some(Self::Growth);
-        }
-        let first = words.first()?;
-        if COUNT.contains(first) || COUNT.contains(&squeezed(&lower).as_str()) {
-            Some(Self::Count)
-        } else {
-            TURN.contains(first).then_some(Self::Turn)
-        }
-    }
-
-    /// Whether a cell says nothing that would change the row.
-    pub(super) fn is_neutral(self, cell: &str) -> bool {
-        let of = |word: &str| word.trim_end_matches(['%', '°']).trim().parse::<f64>().ok();
-        match self {
-            Self::Count => of(cell) == Some(1.0),
-            Self::Turn => cell
-                .split([' ', ',', ';', '[', ']', '(', ')'])
-                .filter(|word| !word.is_empty())
-                .all(|word| of(word) == Some(0.0)),
-            // A policy has a name, and the column may be of those.
-            Self::Growth => of(cell).is_none_or(|share| share == 0.0),
-        }
-    }
-}
-
 impl Column {
     /// What a number is in, and its unit in SI, if one is stated. A percentage and a word have none.
     fn unit(&mut self) -> Option<(Dimension, &mut Option<f64>)> {
@@ -195,6 +136,16 @@ impl Group {
 }
 
 impl Heading {
+    /// Whether its cells are numbers.
+    pub(super) fn is_number(&self) -> bool {
+        let is_attitude = matches!(self, Self::Column(Column::Attitude(_)));
+        is_attitude || self.is_percent() || self.dimension().is_some()
+    }
+
+    pub(super) fn is_percent(&self) -> bool {
+        matches!(self, Self::Column(Column::Deviation(_, Scale::Percent)))
+    }
+
     /// What a column of numbers is in, and its unit in SI, if one is stated.
     pub(super) fn dimension(&self) -> Option<(Dimension, Option<f64>)> {
         match *self {
@@ -275,7 +226,8 @@ impl Heading {
         if let Some(found) = found {
             return found;
         }
-        if spread::is_marked(text) || is_spread(text) || spread::is_alone(text) {
+        let is_deviation = spread::is_marked(text) || spread::has_typed_mark(text);
+        if is_deviation || is_spread(text) || spread::is_alone(text) {
             Self::NoDeviation
         } else if is_unread_product(text) {
             Self::Product
@@ -330,10 +282,10 @@ fn word(plain: &str) -> Option<Column> {
         "ipoint" | "point" => Some(Column::Point),
         "shape" => Some(Column::Shape),
         "inertiafollowsmass" => Some(Column::Follows),
-        "attitudex" | "qx" => Some(Column::Attitude(0)),
-        "attitudey" | "qy" => Some(Column::Attitude(1)),
-        "attitudez" | "qz" => Some(Column::Attitude(2)),
-        "attitudew" | "qw" => Some(Column::Attitude(3)),
+        "attitudex" | "qx" | "quatx" | "quaternionx" => Some(Column::Attitude(0)),
+        "attitudey" | "qy" | "quaty" | "quaterniony" => Some(Column::Attitude(1)),
+        "attitudez" | "qz" | "quatz" | "quaternionz" => Some(Column::Attitude(2)),
+        "attitudew" | "qw" | "quatw" | "quaternionw" => Some(Column::Attitude(3)),
         _ => None,
     }
 }
@@ -484,7 +436,10 @@ mod tests {
             ("roll_deg", Heading::Unread(Unread::Turn)),
             ("MGA %", Heading::Unread(Unread::Growth)),
             ("mass growth allowance", Heading::Unread(Unread::Growth)),
+            ("quat_w", Heading::Column(Column::Attitude(3))),
             ("basic mass", Heading::Other),
+            ("+/-", Heading::NoDeviation),
+            ("error", Heading::NoDeviation),
             ("function", Heading::Other),
             ("Mass [Mg]", value(0, Some(1000.0))),
             ("supplier", Heading::Other),

@@ -3,10 +3,12 @@
 mod error;
 pub(crate) mod heading;
 mod row;
+mod totals;
+mod unread;
 
 pub use error::{PartsError, PartsFile, PartsProblem};
-pub use heading::Unread;
 pub use row::{PartNumbers, PartRow};
+pub use unread::Unread;
 
 use std::collections::BTreeMap;
 
@@ -17,16 +19,13 @@ use crate::{
     products_comment::stated_products,
     rows::{Field, Rows, TITLES, is_comment, lines},
     text::Text,
-    units::Unit,
+    units::{Unit, squeezed},
 };
 use heading::{Column, Heading};
 use row::Cells;
 
 /// The assembly of a list without assemblies.
 const WHOLE: &str = "whole";
-
-/// How far the numbers of a total may be from those of its parts, as they are rounded.
-const ROUNDED: f64 = 1e-3;
 
 /// A list of parts and assemblies.
 ///
@@ -109,33 +108,11 @@ impl PartsTable {
         &self.rows
     }
 
-    /// A part that has mass and mass centre of all the others together, and may be their total, of three or more: its name
-    /// does not say so.
+    /// Parts that have mass and mass centre of those above them together, two or more, and may be their total: their names do not
+    /// say so.
     #[must_use]
-    pub fn like_a_total(&self) -> Option<&PartRow> {
-        let parts = || self.rows.iter().filter_map(|row| Some((row, row.numbers()?)));
-        let moments =
-            |numbers: &PartNumbers| numbers.mass_centre_m().map(|x| x * numbers.mass_kg());
-        let mut all = [0.0; 4];
-        let mut size = 0.0_f64;
-        for (_, numbers) in parts() {
-            let [x, y, z] = moments(numbers);
-            for (sum, one) in all.iter_mut().zip([numbers.mass_kg(), x, y, z]) {
-                *sum += one;
-            }
-            size = numbers.mass_centre_m().iter().fold(size, |size, x| size.max(x.abs()));
-        }
-        let is_total = |numbers: &PartNumbers| {
-            let mass = numbers.mass_kg();
-            let near =
-                |twice: f64, one: f64, size: f64| (twice - 2.0 * one).abs() <= ROUNDED * size;
-            let centre = moments(numbers).into_iter().zip(&all[1..]);
-            mass > 0.0
-                && near(all[0], mass, mass)
-                && centre.into_iter().all(|(one, twice)| near(*twice, one, mass * size))
-        };
-        let mut totals = parts().filter(|(_, numbers)| is_total(numbers));
-        totals.next().map(|(row, _)| row).filter(|_| parts().count() >= 3)
+    pub fn like_totals(&self) -> Vec<&PartRow> {
+        totals::like_totals(&self.rows)
     }
 
     /// Headings of columns that mean nothing here.
@@ -153,6 +130,15 @@ impl PartsTable {
         let mut columns: Vec<Heading> = columns.collect();
         if !columns.contains(&Heading::Column(Column::Shape)) {
             columns = columns.into_iter().map(Heading::without_shapes).collect();
+        }
+        // Beside names, numbers are no names.
+        let is_id = |heading: &String| squeezed(heading) == "id";
+        let names =
+            columns.iter().filter(|column| **column == Heading::Column(Column::Name)).count();
+        if names == 2
+            && let Some(id) = headings.iter().position(is_id)
+        {
+            columns[id] = Heading::Other;
         }
         let mut passed_over = Vec::new();
         for (at, (column, heading)) in columns.iter().zip(&headings).enumerate() {
@@ -212,6 +198,10 @@ impl PartsTable {
             let row =
                 Cells { columns: &columns, headings: &headings, cells: &cells, products }.row(line);
             found.push(row.map_err(|error| error.beside(&passed_over))?);
+        }
+        if let Some(row) = totals::named(&found) {
+            let (_, line) = row.place();
+            return Err(PartsError::new(line, Some(row.name()), PartsProblem::Summary));
         }
         Ok(Raw { rows: found, passed_over, has_parents })
     }
@@ -289,27 +279,38 @@ fn header(text: &Text) -> Result<Option<(usize, Vec<String>, Rows<'_>)>, PartsEr
     };
     let mut headings = cells(&first);
     let mut below = rows.clone();
-    if let Some(Ok(units)) = below.next()
-        && let Some(with_units) = with_units(&headings, &cells(&units))
-    {
-        (headings, rows) = (with_units, below);
+    if let Some(Ok(units)) = below.next() {
+        let line = line_of(text, &units);
+        let with_units = with_units(&headings, &cells(&units));
+        if let Some(with_units) = with_units.map_err(|p| PartsError::new(line, None, p))? {
+            (headings, rows) = (with_units, below);
+        }
     }
     Ok(Some((line_of(text, &first), headings, rows)))
 }
 
 /// The headings with the units of the row below them, if it is a row of units: it has one for a number, and no number.
-fn with_units(headings: &[String], below: &[String]) -> Option<Vec<String>> {
+fn with_units(headings: &[String], below: &[String]) -> Result<Option<Vec<String>>, PartsProblem> {
     let mut some = false;
+    let mut bad = None;
     let mut together = headings.to_vec();
     for (heading, unit) in together.iter_mut().zip(below) {
-        let Some((dimension, stated)) = Heading::of(heading).dimension() else { continue };
-        if unit.is_empty() || unit == "-" {
+        let column = Heading::of(heading);
+        if !column.is_number() || unit.is_empty() || unit == "-" {
             continue;
         }
         if unit.parse::<f64>().is_ok() {
-            return None;
+            return Ok(None);
         }
         let unit = unit.trim_start_matches(['[', '(']).trim_end_matches([']', ')']);
+        let Some((dimension, stated)) = column.dimension() else {
+            let is_percent = column.is_percent();
+            if !is_percent || !["%", "percent"].contains(&unit) {
+                let allowed = if is_percent { "%, for one standard deviation" } else { "none" };
+                bad = bad.or(Some((heading.clone(), unit.to_owned(), allowed)));
+            }
+            continue;
+        };
         let si = Unit::of(unit, dimension).ok().map(|unit| unit.si);
         some |= si.is_some() || unit == "%";
         // Both may say the same.
@@ -317,7 +318,16 @@ fn with_units(headings: &[String], below: &[String]) -> Option<Vec<String>> {
             *heading = format!("{heading} [{unit}]");
         }
     }
-    (some && headings.len() == below.len()).then_some(together)
+    if !some || headings.len() != below.len() {
+        return Ok(None);
+    }
+    match bad {
+        Some((heading, unit, allowed)) => {
+            let (heading, unit) = (shortened(&heading), shortened(&unit));
+            Err(PartsProblem::UnitBelow { heading, unit, allowed })
+        }
+        None => Ok(Some(together)),
+    }
 }
 
 fn next(text: &Text, rows: &mut Rows<'_>) -> Result<Option<Vec<Field>>, PartsError> {
@@ -335,5 +345,7 @@ fn cell(text: &Text, field: &Field) -> String {
     if plain == "NA" { String::new() } else { plain }
 }
 
+#[cfg(test)]
+mod spreadsheets;
 #[cfg(test)]
 mod tests;

@@ -9,7 +9,6 @@ use super::heading::{self, Column, GYRATION, Group, Heading, Scale, VALUES};
 use crate::{
     FileBodyError, Products,
     body::{Number, shortened},
-    summary_row::is_summary,
 };
 
 /// How far the four components of an attitude may be from a unit quaternion.
@@ -140,9 +139,6 @@ impl Cells<'_> {
             return Err(refused(problem));
         }
         let numbers = self.numbers().map_err(refused)?;
-        if numbers.is_some() && is_summary(&name) {
-            return Err(refused(PartsProblem::Summary));
-        }
         let place = (PartsFile::Parts, line);
         Ok(PartRow { name, parent, place, parent_place: place, numbers })
     }
@@ -349,6 +345,9 @@ impl Cells<'_> {
         };
         for ((Group(first, count), scale), cell) in self.given(of) {
             let field = heading::deviation(Group(first, count), scale);
+            // In a column of percentages the sign may stand again.
+            let cell =
+                if scale == Scale::Percent { cell.trim_end_matches('%').trim_end() } else { cell };
             let value = Number::parse(field, cell, None)?.value;
             if !(value >= 0.0) {
                 let allowed = "zero or more";

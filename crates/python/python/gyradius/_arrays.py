@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+from gyradius import _core
+
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
 
@@ -73,6 +75,9 @@ def numbers(name: str, value: ArrayLike) -> NDArray[np.float64]:
 
 def rows(name: str, value: ArrayLike, tail: tuple[int, ...]) -> tuple[NDArray[np.float64], tuple[int, ...]]:
     """An array of shape (..., *tail) as rows, and what the dots stand for."""
+    named = getattr(value, "columns", None)
+    if tail == (10,) and named is not None and set(named) == set(_core.COLUMNS) and list(named) != list(_core.COLUMNS):
+        raise ValueError(f"{name}: its columns must be in the order of gyradius.COLUMNS, as in table[list(gyradius.COLUMNS)]")
     array = numbers(name, value)
     if array.shape[array.ndim - len(tail) :] != tail or array.ndim < len(tail):
         wanted = ", ".join(["...", *map(str, tail)])

@@ -4,7 +4,7 @@ use gyradius_dispersion::TenParameters;
 use gyradius_estimation::{FirstOrder, PartFinding, TEN_UNITS};
 use serde::Serialize;
 
-use super::Shown;
+use super::{LIKE_A_TOTAL, Shown};
 
 /// Grows when a field changes its meaning or goes; new fields may come without it.
 const SCHEMA: u32 = 1;
@@ -100,6 +100,13 @@ pub(super) fn text(shown: &Shown<'_>) -> serde_json::Result<String> {
             message: finding.to_string(),
         })
     });
+    let totals = shown.table.like_totals();
+    let totals = totals.iter().map(|row| Finding {
+        part: row.name(),
+        impossible: false,
+        moved: Vec::new(),
+        message: LIKE_A_TOTAL.to_owned(),
+    });
     let drawn = shown.draws.map(|drawn| {
         let (m, naive) = (&drawn.moments, &drawn.naive);
         let spread = m.spread.as_ref();
@@ -138,7 +145,7 @@ pub(super) fn text(shown: &Shown<'_>) -> serde_json::Result<String> {
         first_order: Nominal::new(assembly.name(), assembly.first_order()),
         drawn,
         assemblies: inside.map(|(_, name, _, moments)| Nominal::new(name, moments)).collect(),
-        findings: findings.collect(),
+        findings: findings.chain(totals).collect(),
         passed_over: shown.table.passed_over(),
     };
     serde_json::to_string_pretty(&document)

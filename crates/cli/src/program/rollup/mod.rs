@@ -15,6 +15,10 @@ use crate::program::{
     signals::Signals,
 };
 
+/// What is said of a part that may be a total.
+const LIKE_A_TOTAL: &str = "it has the mass and the mass centre of other rows together; if it is their total, it is counted \
+                            twice, and must be left out";
+
 /// What there is to show.
 struct Shown<'a> {
     arguments: &'a RollupArgs,

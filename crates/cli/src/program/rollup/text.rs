@@ -3,7 +3,7 @@
 use gyradius_dispersion::{TenParameters, TenSpread};
 use std::fmt::{self, Write};
 
-use super::Shown;
+use super::{LIKE_A_TOTAL, Shown};
 use crate::program::{
     fit::wrapped,
     number::{short, with_error},
@@ -119,13 +119,8 @@ fn notes(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
     for (name, part) in shown.rollup.assembly().parts() {
         notes.extend(part.findings().iter().map(|finding| format!("warning: {name}: {finding}")));
     }
-    if let Some(row) = shown.table.like_a_total() {
-        notes.push(format!(
-            "warning: {}: it has the mass and the mass centre of all other rows together; if it is their total, it is counted \
-             twice, and must be left out",
-            row.name()
-        ));
-    }
+    let totals = shown.table.like_totals();
+    notes.extend(totals.iter().map(|row| format!("warning: {}: {LIKE_A_TOTAL}", row.name())));
     if !shown.table.passed_over().is_empty() {
         let names = shown.table.passed_over().join(", ");
         notes.push(format!("columns that mean nothing here: {names}"));

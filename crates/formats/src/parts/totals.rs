@@ -1,0 +1,75 @@
+//! Rows of a list of parts that sum up others: counted as parts, they would be counted twice.
+
+use super::row::{PartNumbers, PartRow};
+use crate::summary_row::{is_summary, speaks_of_sums};
+
+/// How far the numbers of a total may be from those of its parts, as they are rounded.
+const ROUNDED: f64 = 1e-3;
+
+/// Mass and first moments.
+type Moments = [f64; 4];
+
+fn moments(numbers: &PartNumbers) -> Moments {
+    let mass = numbers.mass_kg();
+    let [x, y, z] = numbers.mass_centre_m().map(|x| x * mass);
+    [mass, x, y, z]
+}
+
+/// The first row with numbers whose name says that it sums up others, or speaks of a sum and has that of rows above it.
+pub(super) fn named(rows: &[PartRow]) -> Option<&PartRow> {
+    let size = size(rows);
+    let mut parts: Vec<Moments> = Vec::new();
+    for (row, numbers) in rows.iter().filter_map(|row| Some((row, row.numbers()?))) {
+        let found = moments(numbers);
+        if is_summary(row.name()) || speaks_of_sums(row.name()) && is_sum(&parts, found, size) {
+            return Some(row);
+        }
+        parts.push(found);
+    }
+    None
+}
+
+/// Rows that have mass and mass centre of all rows above them together, but for such rows, or, the first one, of all below it.
+pub(super) fn like_totals(rows: &[PartRow]) -> Vec<&PartRow> {
+    let size = size(rows);
+    let all: Vec<(&PartRow, Moments)> =
+        rows.iter().filter_map(|row| Some((row, moments(row.numbers()?)))).collect();
+    let mut found = Vec::new();
+    let mut above: (Moments, usize) = ([0.0; 4], 0);
+    for (at, (row, own)) in all.iter().enumerate() {
+        let rest =
+            |of: &[(&PartRow, Moments)]| of.iter().fold([0.0; 4], |sum, (_, one)| plus(sum, *one));
+        let of_all = at == 0 && all.len() > 2 && is_same(rest(&all[1..]), *own, size);
+        if of_all || above.1 >= 2 && is_same(above.0, *own, size) {
+            found.push(*row);
+        } else {
+            above = (plus(above.0, *own), above.1 + 1);
+        }
+    }
+    found
+}
+
+/// Whether it is the sum of two or more of the last ones.
+fn is_sum(parts: &[Moments], of: Moments, size: f64) -> bool {
+    let mut sum = [0.0; 4];
+    parts.iter().rev().enumerate().any(|(at, one)| {
+        sum = plus(sum, *one);
+        at > 0 && is_same(sum, of, size)
+    })
+}
+
+fn plus(a: Moments, b: Moments) -> Moments {
+    std::array::from_fn(|i| a[i] + b[i])
+}
+
+/// To rounding: of the mass, and of the mass at the greatest distance.
+fn is_same(sum: Moments, total: Moments, size: f64) -> bool {
+    let near = |i: usize, of: f64| (sum[i] - total[i]).abs() <= ROUNDED * of;
+    total[0] > 0.0 && near(0, total[0]) && (1..4).all(|i| near(i, total[0] * size))
+}
+
+/// The greatest coordinate of a mass centre, m.
+fn size(rows: &[PartRow]) -> f64 {
+    let numbers = rows.iter().filter_map(PartRow::numbers);
+    numbers.flat_map(PartNumbers::mass_centre_m).fold(0.0, |size: f64, x| size.max(x.abs()))
+}

@@ -1,0 +1,199 @@
+//! Columns that would change the numbers of a row, and are not read.
+
+use crate::{spread::words, units::squeezed};
+
+/// What would change the numbers of a row, and is not read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unread {
+    /// How many parts a row is.
+    Count,
+    /// An angle by which the part is turned, or another form of its attitude.
+    Turn,
+    /// A growth allowance of the mass.
+    Growth,
+    /// The unit of a row.
+    Unit,
+}
+
+/// A kind: words that a heading of it has, one of them at least, and words that may stand beside them. With any other word, it is a
+/// heading of something else, as `pitch diameter`.
+type Words = (Unread, &'static [&'static str], &'static [&'static str]);
+
+const KINDS: [Words; 4] = [
+    (
+        Unread::Count,
+        &[
+            "qty",
+            "quantity",
+            "count",
+            "pcs",
+            "pieces",
+            "multiplicity",
+            "instances",
+            "copies",
+            "ea",
+            "off",
+            "units",
+            "anzahl",
+            "menge",
+            "stk",
+            "stück",
+            "qté",
+            "qte",
+        ],
+        &[
+            "no", "nr", "num", "number", "of", "parts", "total", "per", "assembly", "assy", "set",
+            "item", "items", "the", "in",
+        ],
+    ),
+    (
+        Unread::Turn,
+        &[
+            "roll",
+            "pitch",
+            "yaw",
+            "euler",
+            "rpy",
+            "rot",
+            "rotx",
+            "roty",
+            "rotz",
+            "rotation",
+            "rx",
+            "ry",
+            "rz",
+            "theta",
+            "phi",
+            "psi",
+            "angle",
+            "angles",
+            "clocking",
+            "azimuth",
+            "elevation",
+            "orientation",
+            "quat",
+            "quaternion",
+            "dcm",
+            "q0",
+            "q1",
+            "q2",
+            "q3",
+            "q4",
+            "dcm11",
+            "dcm12",
+            "dcm13",
+            "dcm21",
+            "dcm22",
+            "dcm23",
+            "dcm31",
+            "dcm32",
+            "dcm33",
+        ],
+        &[
+            "deg", "degree", "degrees", "rad", "radians", "x", "y", "z", "w", "1", "2", "3",
+            "about", "axis", "xyz", "zyx",
+        ],
+    ),
+    (
+        Unread::Growth,
+        &["mga", "growth", "contingency", "margin"],
+        &[
+            "mass",
+            "allowance",
+            "percent",
+            "pct",
+            "kg",
+            "g",
+            "lb",
+            "factor",
+            "with",
+            "incl",
+            "including",
+            "and",
+        ],
+    ),
+    (Unread::Unit, &["unit", "units", "uom"], &["mass", "of"]),
+];
+
+impl Unread {
+    /// What a heading holds of this kind.
+    pub(super) fn of(heading: &str) -> Option<Self> {
+        let lower = heading.to_lowercase();
+        let all: Vec<&str> = words(&lower).filter(|word| !word.is_empty()).collect();
+        let is_of = |(_, keys, beside): &&Words| {
+            let is_key = |word: &&str| keys.contains(word);
+            all.iter().any(is_key) && all.iter().all(|word| is_key(word) || beside.contains(word))
+        };
+        // `units` alone are those of the row.
+        let found = KINDS.iter().find(is_of).map(|(kind, ..)| *kind);
+        if squeezed(&lower) == "units" { Some(Self::Unit) } else { found }
+    }
+
+    /// Whether a cell says nothing that would change the row.
+    pub(super) fn is_neutral(self, cell: &str) -> bool {
+        let has_digit = cell.contains(|c: char| c.is_ascii_digit());
+        let of = |word: &str| word.trim_end_matches(['%', '°']).trim().parse::<f64>().ok();
+        match self {
+            // Words alone, as `each` or `-`, are no count.
+            Self::Count => !has_digit || of(cell.trim_matches(['x', 'X', '×', ' '])) == Some(1.0),
+            Self::Turn => {
+                let words = cell.split([' ', ',', ';', '[', ']', '(', ')']);
+                !has_digit
+                    || words.filter(|word| !word.is_empty()).all(|word| of(word) == Some(0.0))
+            }
+            Self::Growth => !has_digit || of(cell) == Some(0.0),
+            Self::Unit => {
+                let plain = cell.to_lowercase();
+                let known = ["kg", "m", "kgm2", "kg·m²", "si", "ea", "each", "pc", "pcs"];
+                let is_unit = |word: &str| word.contains(char::is_alphabetic);
+                plain
+                    .split([',', ' ', ';', '/'])
+                    .all(|word| !is_unit(word) || known.contains(&word))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_of_something_else_are_none() {
+        for (heading, kind) in [
+            ("Qty", Unread::Count),
+            ("Total Qty", Unread::Count),
+            ("No. of units", Unread::Count),
+            ("# off", Unread::Count),
+            ("Anzahl", Unread::Count),
+            ("Rot X (deg)", Unread::Turn),
+            ("theta_z", Unread::Turn),
+            ("q1", Unread::Turn),
+            ("clocking angle [deg]", Unread::Turn),
+            ("MGA %", Unread::Growth),
+            ("mass with margin [kg]", Unread::Growth),
+            ("unit", Unread::Unit),
+            ("Units", Unread::Unit),
+        ] {
+            assert_eq!(Unread::of(heading), Some(kind), "{heading}");
+        }
+        for heading in [
+            "pitch diameter [mm]",
+            "Roll number",
+            "Rotation speed rpm",
+            "yaw actuator id",
+            "thermal margin",
+            "growth rate",
+            "margin notes",
+            "Quantity unit price",
+            "count verified by",
+            "pieces drawing",
+            "material",
+            "",
+            "#",
+            "x",
+        ] {
+            assert_eq!(Unread::of(heading), None, "{heading}");
+        }
+    }
+}
