@@ -123,6 +123,23 @@ fn of_vehicles_the_first_flights_are_judged() {
             warned.contains("not the column run") && warned.starts_with("warning: "),
             "{warned}"
         );
+        // Or one in which they do not belong together: vehicles from 1, and a cell that is blank.
+        let from_1 = |run: u32| format!("{run},{},{},1.0\n", run / 5 + 1, run % 5 + 1);
+        let blank = |run: u32| match run {
+            37 => "37,,2,1.0\n".to_owned(),
+            _ => format!("{run},{},{},1.0\n", run / 5, run % 5),
+        };
+        for row in [&from_1 as &dyn Fn(u32) -> String, &blank] {
+            let rows: String = (0..450).map(row).collect();
+            fs::write(scratch.path("odd.csv"), format!("run,vehicle,flight,y\n{rows}")).unwrap();
+            let odd = scratch.run(&["verdict", "odd.csv", "--require", "y <= 5 in 90 % at 90 %"]);
+            assert!(String::from_utf8(odd.stdout).unwrap().contains("450 runs"));
+            let warned = String::from_utf8(odd.stderr).unwrap();
+            assert!(
+                warned.starts_with("warning: ") && warned.contains("do not belong together"),
+                "{warned}"
+            );
+        }
         let block = format!("{name}/runs/proposed/000000000-000000449.parquet");
         fs::copy(scratch.path(&block), scratch.path("alone.parquet")).unwrap();
         let said =

@@ -62,15 +62,27 @@ impl Fleet {
 
     /// The table with the first flight of each vehicle counted, if it is a run table of vehicles and flights that a study wrote, or a copy of
     /// some of its columns and rows, and nothing says whether the flights of a vehicle have something in common: first flights have not.
+    /// With it, why all rows are counted all the same, where the table has vehicles and flights and does not tell which are the first.
     ///
     /// # Errors
     /// The table cannot be read, or its columns `run`, `vehicle` and `flight` are not those of a study.
-    pub fn first_flights(table: ForeignTable) -> Result<ForeignTable, ForeignError> {
+    pub fn first_flights(
+        table: ForeignTable,
+    ) -> Result<(ForeignTable, Option<&'static str>), ForeignError> {
+        const LOST: &str = "the table has the columns vehicle and flight, but not the column run of a study's run table: all rows are \
+                            judged as runs that are independent of each other; with the column run, the first flight of each vehicle is \
+                            judged";
+        const OTHER: &str = "the columns run, vehicle and flight do not belong together as in the run table of a study, where the run is \
+                             the vehicle times the flights of each plus the flight, all from 0: all rows are judged as runs that are \
+                             independent of each other, which flights of one vehicle need not be";
         let [vehicle, flight] = Self::columns().map(|column| column.name().to_owned());
         let names = [Column::RUN.to_owned(), vehicle, flight];
         let has = |name: &String| table.columns().contains(name);
-        if table.campaign().is_some() || !names.iter().all(has) {
-            return Ok(table);
+        if table.campaign().is_some() || !names[1..].iter().all(has) {
+            return Ok((table, None));
+        }
+        if !has(&names[0]) {
+            return Ok((table, Some(LOST)));
         }
         let mut seen = SeenFlights::default();
         let read = table.scan_beside(&[], &names, |columns| {
@@ -82,7 +94,7 @@ impl Fleet {
         match (read, seen.each()) {
             (Ok(()), Some(each)) => {
                 let counting = Counting::new(table.counting().looks(), each);
-                Ok(table.counted(counting))
+                Ok((table.counted(counting), None))
             }
             (Ok(()), None) if table.is_run_table() => Err(table.refused(
                 "its columns \"run\", \"vehicle\" and \"flight\" do not belong together as in the run table of a study, where the run \
@@ -90,17 +102,8 @@ impl Fleet {
             )),
             (Err(error), _) if table.is_run_table() => Err(error),
             // Columns of another program that have the same names.
-            (Ok(()) | Err(_), _) => Ok(table),
+            (Ok(()) | Err(_), _) => Ok((table, Some(OTHER))),
         }
-    }
-
-    /// Whether a table looks like one of vehicles and flights whose runs have lost their numbers, so that nobody knows which flights are
-    /// the first.
-    #[must_use]
-    pub fn lost_runs(table: &ForeignTable) -> bool {
-        let has = |column: &Column| table.columns().iter().any(|name| name == column.name());
-        let has_runs = table.columns().iter().any(|name| name == Column::RUN);
-        table.campaign().is_none() && !has_runs && Self::columns().iter().all(has)
     }
 
     /// What a run has in them.

@@ -123,7 +123,11 @@ pub(crate) fn do_what_is_left<C: Subject>(
     let of = scenario.runs() * simulations.len() as u64;
     // Who puts together what others did does no runs.
     let asked = scenario.drivers().is_some() && doing == Doing::All;
+    // Runs that failed for the indices alone are done again with these.
+    let is_failed = |summary: C::Summary| summary.head().drivers.iter().any(|one| one.failed > 0);
+    let drivers_again = asked && retries && whole_summary::<C>(&place).is_some_and(is_failed);
     if left == 0
+        && !drivers_again
         && let Some(study) = finished::<C>(&folder, &text, &simulations, &blocks, asked)?
     {
         if options.force {

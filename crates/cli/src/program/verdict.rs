@@ -21,12 +21,9 @@ pub(crate) fn verdict(arguments: &VerdictArgs) -> Result<ExitCode, Box<dyn Error
     } else {
         (arguments.table.as_path(), ForeignTable::open(&arguments.table)?)
     };
-    let table = Fleet::first_flights(table)?;
-    if Fleet::lost_runs(&table) {
-        say(
-            "warning: the table has the columns vehicle and flight, but not the column run of a study's run table: all rows are judged as runs that are \
-             independent of each other; with the column run, the first flight of each vehicle is judged",
-        );
+    let (table, unknown) = Fleet::first_flights(table)?;
+    if let Some(unknown) = unknown {
+        say(&format!("warning: {unknown}"));
     }
     let failed = if arguments.leave_out_failed { FailedRuns::LeftOut } else { FailedRuns::Against };
     let requirements: Vec<Requirement> =

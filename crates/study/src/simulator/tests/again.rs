@@ -85,6 +85,49 @@ done
     }
 }
 
+/// If all runs of the study went well and some that were done for the indices alone did not, those indices are found again.
+#[test]
+fn indices_with_failed_runs_are_found_again() {
+    // While there is a file, runs fail after the 300th, which are those for the indices.
+    const LATE: &str = r#"
+while read -r line; do
+    echo . >> asked
+    x=${line##*'"x":'}; x=${x%%[,\}]*}
+    if [ -e busy ] && [ $(($(wc -l < asked) % 7)) = 0 ] && [ $(wc -l < asked) -gt 320 ]; then
+        echo '{"error":"no licence"}'
+    else
+        echo "{\"outputs\":{\"y\":$x}}"
+    fi
+done
+"#;
+    let folder = folder();
+    fs::write(folder.path().join("answer.sh"), LATE).unwrap();
+    fs::write(folder.path().join("asked"), "").unwrap();
+    let text = format!("drivers = 100\n{}", uniform());
+    let scenario = scenario(&text, folder.path()).with_runs(300).unwrap();
+    let options = Options { threads: Some(1), ..Options::to(folder.path().join("out")) };
+    let busy = folder.path().join("busy");
+    fs::write(&busy, "").unwrap();
+    let drivers = |options: &Options| {
+        let study = scenario.study(options, &|_| {}, &|_| {}).unwrap();
+        let failed = Status::read(study.folder()).unwrap().models[0].failed;
+        assert_eq!(failed, 0);
+        study.summary().head.drivers[0].clone()
+    };
+    let first = drivers(&options);
+    assert!(first.failed > 5, "{}", first.failed);
+    fs::remove_file(&busy).unwrap();
+    // Not unless they are to be done again.
+    assert_eq!(drivers(&options), first);
+    let again = Options { retry_failed: true, ..options.clone() };
+    let second = drivers(&again);
+    assert_eq!(second.failed, 0);
+    let asked = || fs::read(folder.path().join("asked")).unwrap().len();
+    let before = asked();
+    assert_eq!(drivers(&again), second);
+    assert_eq!(asked(), before);
+}
+
 /// A run is held against what the study kept of its row, and an import that was changed is found wherever it shows.
 #[test]
 fn one_run_is_held_against_its_row() {
