@@ -7,13 +7,7 @@ use gyradius_statistics::Survey;
 use nalgebra::{Unit, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    Fleet,
-    body::{Body, Entry},
-    folded::FoldedRoot,
-    quantity::Quantity,
-    unmatched::UnmatchedLaw,
-};
+use crate::{Fleet, folded::FoldedRoot, unmatched::UnmatchedLaw};
 
 /// A kurtosis above which tails are heavy: intervals of standard deviations then cover less often than they say.
 pub(crate) const HEAVY: f64 = 10.0;
@@ -154,8 +148,8 @@ impl Alert {
     }
 
     /// That so many of the drawn bodies are near the boundary of what is realizable, if these are many.
-    pub(crate) fn near_boundary(model: &str, body: Body, near: u64, drawn: u64) -> Option<Self> {
-        let (model, body) = (model.to_owned(), body.name().to_owned());
+    pub(crate) fn near_boundary(model: &str, body: &str, near: u64, drawn: u64) -> Option<Self> {
+        let (model, body) = (model.to_owned(), body.to_owned());
         (near as f64 > MANY * drawn as f64).then_some(Self::NearBoundary {
             model,
             body,
@@ -266,8 +260,8 @@ pub(crate) fn section(alerts: &[Alert]) -> Option<Section> {
 
 /// How many of the inertias of a body in a run table have a margin below [`NEAR`], and how many there are. The margin is the smallest
 /// second moment over the trace, and every margin is above a number if ½ tr(I)·1 − I less that share of the trace is positive definite.
-pub(crate) fn near_boundary(table: &Table, body: Body) -> [u64; 2] {
-    let columns = Entry::ALL.map(|entry| table.numbers(&Quantity::entry(body, entry).column()));
+pub(crate) fn near_boundary(table: &Table, entries: &[impl AsRef<str>; 6]) -> [u64; 2] {
+    let columns = entries.each_ref().map(|entry| table.numbers(entry.as_ref()));
     let inertia = |place: usize| {
         let mut of_run = [0.0; 6];
         for (entry, numbers) in of_run.iter_mut().zip(&columns) {

@@ -8,7 +8,7 @@ use std::sync::Mutex;
 use crate::{
     Fleet,
     alerts::near_boundary,
-    body::Body,
+    body::{Body, Entry},
     column::attitudes,
     faults::{Faults, GivenFault},
     quantity::Quantity,
@@ -132,7 +132,9 @@ impl Drawn {
             first: block.first(),
             drawn: [0, 1].map(|body: usize| all[body].len() as u64),
             far,
-            near_boundary: Body::BOTH.map(|body| near_boundary(block, body)),
+            near_boundary: Body::BOTH.map(|body| {
+                near_boundary(block, &Entry::ALL.map(|entry| Quantity::entry(body, entry).column()))
+            }),
             backwards: errors.filter(|error| *error > 90.0).count() as u64,
             kept: kept.filter(|(run, _)| run.is_multiple_of(stride)).map(|(_, q)| *q).collect(),
         }

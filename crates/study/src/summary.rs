@@ -418,7 +418,8 @@ impl ModelSummary {
         let heavy =
             outcomes.map(|q| (q.quantity.label().into_owned(), q.quantity.scale(), &q.sample));
         let near = Body::BOTH.into_iter().zip(seen.near_boundary);
-        let near = near.filter_map(|(body, [near, of])| Alert::near_boundary(name, body, near, of));
+        let near =
+            near.filter_map(|(body, [near, of])| Alert::near_boundary(name, body.name(), near, of));
         let parted = seen.quantity(Quantity::DirectionError).map_or(0, Survey::n);
         let backwards =
             Alert::backwards(name, seen.backwards, parted, scenario.outlines().is_some());

@@ -109,11 +109,16 @@ impl SimulatedBody {
         Ok(Self { name, uncertain, inertia_drawn, numbers })
     }
 
+    /// The columns of the six entries of its inertia.
+    pub(super) fn entries(&self) -> [String; 6] {
+        Entry::ALL.map(|entry| format!("{}_i{}", self.name, digits(entry)))
+    }
+
     /// Its numbers, the six entries of the inertia, and the attitude of the principal axes.
     pub(super) fn columns(&self) -> impl Iterator<Item = Column> {
         let name = &self.name;
         let entry = move |entry: Entry| {
-            let digits = format!("{entry:?}").replace('I', "");
+            let digits = digits(entry);
             let meaning = format!(
                 "Entry {digits} of the inertia matrix of the body {name} as drawn, about its mass centre, body axes."
             );
@@ -129,6 +134,11 @@ impl SimulatedBody {
         let numbers = self.numbers.iter().map(|number| number.column.clone());
         numbers.chain(Entry::ALL.into_iter().map(entry)).chain((1..=4).map(axes))
     }
+}
+
+/// The axes of an entry: `12`.
+fn digits(entry: Entry) -> String {
+    format!("{entry:?}").replace('I', "")
 }
 
 /// A number that is sent, and what it is where nothing is drawn.

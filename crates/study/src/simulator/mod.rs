@@ -7,6 +7,7 @@ mod draws;
 mod examples;
 mod file;
 mod function;
+mod looking;
 mod read;
 mod replay;
 mod scenario;

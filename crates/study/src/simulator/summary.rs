@@ -1,11 +1,10 @@
 //! Campaigns of simulators as studies: how their runs are simulated, and what they amount to.
 
 use gyradius_campaign::{
-    Column, ExternalSimulation, FirstLook, Forecast, Progress, Runs, SampleSummary, Simulator,
+    Column, ExternalSimulation, Forecast, Progress, Runs, SampleSummary, Simulator,
     SimulatorFunction, Surveys, Unasked,
 };
 use gyradius_report::{Document, Overview, file_of, most_frequent, optional, resolved, with_unit};
-use gyradius_statistics::Confidence;
 use rayon::ThreadPool;
 use serde::{Deserialize, Serialize};
 use std::{
@@ -14,9 +13,9 @@ use std::{
     sync::{Arc, atomic::AtomicBool},
 };
 
-use super::{draws::SimulatorDraws, scenario::SimulatorScenario};
+use super::{draws::SimulatorDraws, looking::Looking, scenario::SimulatorScenario};
 use crate::{
-    Fleet, Notice, Options, ScenarioError, Study, StudyError,
+    Notice, Options, ScenarioError, Study, StudyError,
     alerts::{self, Alert},
     carry_out::carry_out,
     decisions, drivers,
@@ -75,7 +74,12 @@ impl SimulatorScenario {
     }
 
     /// What a reader should know first of the model in a place.
-    fn alerts(&self, overview: &Overview, place: usize, surveys: &Surveys) -> Vec<Alert> {
+    fn alerts(
+        &self,
+        overview: &Overview,
+        place: usize,
+        (surveys, near): (&Surveys, &Vec<[u64; 2]>),
+    ) -> Vec<Alert> {
         let name = surveys.model();
         let failed = Alert::failed(surveys).into_iter();
         let unmoved = self.dispersed().all.iter().filter_map(|dispersed| {
@@ -86,7 +90,10 @@ impl SimulatorScenario {
         let outputs = overview.quantities().filter(|(column, ..)| is_output(column));
         let heavy = outputs
             .filter_map(|(column, _, samples)| Some((column.to_owned(), 0.0, samples.get(place)?)));
-        failed.chain(unmoved).chain(Alert::heavy_tails(name, heavy)).collect()
+        let near = self.bodies().iter().zip(near).filter_map(|(body, [near, drawn])| {
+            Alert::near_boundary(name, &body.name, *near, *drawn)
+        });
+        failed.chain(unmoved).chain(Alert::heavy_tails(name, heavy)).chain(near).collect()
     }
 
     /// What of the draws of each model the regions of the bodies keep.
@@ -150,7 +157,7 @@ impl Subject for SimulatorScenario {
 
     type Prepared = Simulator;
     type Simulation<'a> = ExternalSimulation<'a, SimulatorDraws<'a>>;
-    type Look<'a> = FirstLook;
+    type Look<'a> = Looking;
     type Summary = SimulatorSummary;
 
     fn resolved(text: &str) -> Result<Self, ScenarioError> {
@@ -231,19 +238,19 @@ impl Subject for SimulatorScenario {
         self.outputs().iter().map(|column| column.name().to_owned()).take(MAIN).collect()
     }
 
-    fn look(&self, model: &str, columns: &[Column]) -> FirstLook {
-        FirstLook::new(model, columns, self.runs(), Confidence::default())
-            .in_groups_of(self.sharing().map_or(1, Fleet::flights))
+    fn look(&self, model: &str, columns: &[Column]) -> Looking {
+        Looking::new(self, model, columns)
     }
 
     fn judge(
         &self,
         _: &Simulator,
-        looks: Vec<FirstLook>,
+        looks: Vec<Looking>,
         runs: &[Runs],
     ) -> Result<SimulatorSummary, StudyError> {
-        let surveys = looks.into_iter().zip(runs).map(|(look, runs)| look.finish(runs));
-        let surveys = surveys.collect::<Result<Vec<Surveys>, _>>()?;
+        let seen = looks.into_iter().zip(runs).map(|(look, runs)| look.finish(runs));
+        let seen = seen.collect::<Result<Vec<_>, _>>()?;
+        let (surveys, near): (Vec<Surveys>, Vec<_>) = seen.into_iter().unzip();
         let columns = runs.first().map_or(&[][..], Runs::columns);
         // The answers before what was asked.
         let is_output = |column: &&Column| self.outputs().iter().any(|o| o.name() == column.name());
@@ -251,8 +258,8 @@ impl Subject for SimulatorScenario {
         let shown: Vec<Column> = outputs.into_iter().chain(inputs).cloned().collect();
         let title = format!("gyradius campaign: {}", self.name());
         let overview = Overview::of_surveys(&title, &shown, &surveys)?;
-        let alerts = surveys.iter().enumerate();
-        let alerts = alerts.flat_map(|(place, surveys)| self.alerts(&overview, place, surveys));
+        let alerts = surveys.iter().zip(&near).enumerate();
+        let alerts = alerts.flat_map(|(place, seen)| self.alerts(&overview, place, seen));
         let alerts = alerts.chain(self.folded().into_iter().map(Alert::Folded));
         let alerts = alerts.chain(self.unmatched().into_iter().map(Alert::Unmatched));
         let head = Head { alerts: alerts.collect(), ..head_of(self, columns) };

@@ -1,6 +1,7 @@
 //! What the page tells of runs that failed: first, by kind, and at each requirement.
 
 use gyradius_campaign::{RunInputs, SimulatorFunction};
+use gyradius_inertia::{InertiaMatrix, RealizabilityReport};
 use proptest::prelude::*;
 use std::{collections::BTreeMap, fs};
 
@@ -186,5 +187,38 @@ fn no_number_has_hundreds_of_digits() {
                 .find(|digits| digits.len() > 25);
             assert_eq!(long, None);
         }
+    }
+}
+
+/// A simulator may be sent bodies that cannot exist: how many of them are near the boundary or beyond it is what the rows say.
+#[test]
+fn impossible_bodies_are_told() {
+    for (deviation, few) in [(0.01, true), (1.0, false)] {
+        let folder = folder();
+        let simple = SimulatorFunction::new(|run: &RunInputs<'_>| {
+            Ok(vec![("y".to_owned(), run.input("x").ok_or("no x")?)])
+        });
+        let bodies = format!(
+            "[[bodies]]\nname = \"h\"\nmass_kg = 10.0\ninertia_kg_m2 = [[1.0, 0.0, 0.0], [0.0, 1.2, 0.0], [0.0, 0.0, 0.9]]\n\
+             [[models]]\nname = \"entries\"\nlaw = \"entrywise\"\nh_deviation_kg_m2 = [[{deviation}, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]\n"
+        );
+        let scenario =
+            SimulatorScenario::from_toml(&format!("runs = 400\n{SCENARIO}{bodies}"), folder.path());
+        let scenario = scenario.unwrap().with_function(simple).unwrap();
+        let out = folder.path().join("out");
+        let study = scenario.study(&Options::to(out.clone()), &|_| {}, &|_| {}).unwrap();
+        let entries = ["h_i11", "h_i22", "h_i33", "h_i12", "h_i13", "h_i23"];
+        let table = study.runs()[0].table().unwrap();
+        let columns = entries.map(|name| table.numbers(name).unwrap());
+        let near = (0..400).filter(|run| {
+            let [a, b, c, d, e, f] = columns.map(|column| column.get(*run).unwrap());
+            let matrix = InertiaMatrix::from_entries([a, b, c], [d, e, f]).unwrap();
+            RealizabilityReport::of(matrix.matrix()).margin().unwrap() < 0.01
+        });
+        let near = near.count();
+        assert_eq!(near == 0, few, "{near}");
+        let page = fs::read_to_string(out.join("report.md")).unwrap();
+        assert_eq!(page.contains("of the drawn inertias of the h are near the boundary"), !few);
+        assert_eq!(page.contains(&format!("({near} of 400)")), !few, "{near}");
     }
 }
