@@ -417,9 +417,8 @@ impl ModelSummary {
         let outcomes = self.quantities.iter().filter(|q| q.quantity.is_told());
         let heavy =
             outcomes.map(|q| (q.quantity.label().into_owned(), q.quantity.scale(), &q.sample));
-        let near = Body::BOTH.into_iter().zip(seen.near_boundary);
-        let near =
-            near.filter_map(|(body, [near, of])| Alert::near_boundary(name, body.name(), near, of));
+        let near = Body::BOTH.map(Body::name).into_iter().zip(seen.near_boundary);
+        let near = near.filter_map(|(body, [near, of])| Alert::near_boundary(name, body, near, of));
         let parted = seen.quantity(Quantity::DirectionError).map_or(0, Survey::n);
         let backwards =
             Alert::backwards(name, seen.backwards, parted, scenario.outlines().is_some());

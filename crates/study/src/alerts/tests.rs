@@ -347,7 +347,7 @@ proptest! {
                 RealizabilityReport::of(matrix.matrix()).margin().unwrap() < 0.01
             });
             let near = near.count() as u64;
-            prop_assert_eq!(near_boundary(&table, &entries.map(|entry| entry.column())), [near, runs]);
+            prop_assert_eq!(near_boundary(&table, &entries.map(Quantity::column)), [near, runs]);
             if near as f64 > 0.001 * runs as f64 {
                 expected.push(("near", format!("{near} {}", body.name())));
             }

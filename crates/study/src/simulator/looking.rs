@@ -4,7 +4,7 @@ use gyradius_campaign::{Column, FirstLook, Runs, RunsError, Surveys, Table};
 use gyradius_statistics::Confidence;
 use std::sync::Mutex;
 
-use super::scenario::SimulatorScenario;
+use super::{body::SimulatedBody, scenario::SimulatorScenario};
 use crate::{Fleet, alerts::near_boundary, subject::LookAt};
 
 /// A look at the runs of a model.
@@ -21,7 +21,7 @@ impl Looking {
     pub(super) fn new(scenario: &SimulatorScenario, model: &str, columns: &[Column]) -> Self {
         let columns = FirstLook::new(model, columns, scenario.runs(), Confidence::default())
             .in_groups_of(scenario.sharing().map_or(1, Fleet::flights));
-        let entries: Vec<_> = scenario.bodies().iter().map(|body| body.entries()).collect();
+        let entries: Vec<_> = scenario.bodies().iter().map(SimulatedBody::entries).collect();
         let near = Mutex::new(vec![[0; 2]; entries.len()]);
         Self { columns, entries, near }
     }
