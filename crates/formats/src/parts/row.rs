@@ -268,7 +268,7 @@ impl Cells<'_> {
         given: [Option<f64>; 6],
     ) -> Result<[f64; 6], PartsProblem> {
         if let Some(moments) = self.gyration(mass_kg)? {
-            if given.iter().any(Option::is_some) || shape.is_some() {
+            if given.iter().flatten().any(|entry| *entry != 0.0) || shape.is_some() {
                 return Err(PartsProblem::Twice { field: "the inertia" });
             }
             let [a, b, c] = moments;

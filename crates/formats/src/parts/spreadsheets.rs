@@ -178,5 +178,8 @@ proptest! {
         prop_assert!(message.contains("given twice"), "{}", message);
         let message = read(&format!("{head}it,1,0,0,0,1,,1,,,\n")).unwrap_err().to_string();
         prop_assert!(message.contains("ky is missing"), "{}", message);
+        // Products of zero say nothing.
+        let zero = "name,mass,Cx,Cy,Cz,kx,ky,kz,ixy,ixz,iyz\nit,1,0,0,0,1,1,1,0,0,0\n";
+        prop_assert!(read(zero).is_ok());
     }
 }
