@@ -227,10 +227,18 @@ mod tests {
 
     #[test]
     fn the_message_says_what_is_wrong_and_what_is_allowed() {
-        let error = Inertia::try_from([[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 6.0]]);
-        let message = error.unwrap_err().to_string();
-        assert!(message.contains('6') && message.contains("at least the third"), "{message}");
-        assert!(message.contains("16.667 %"), "K3 = -1.5 of a trace of 9: {message}");
+        let message = |moments: [f64; 3]| {
+            let [a, b, c] = moments;
+            let error = Inertia::try_from([[a, 0.0, 0.0], [0.0, b, 0.0], [0.0, 0.0, c]]);
+            error.unwrap_err().to_string()
+        };
+        let said = message([1.0, 2.0, 6.0]);
+        assert!(said.contains("at most the sum of the other two"), "{said}");
+        assert!(said.contains("it is 100.000 % more"), "6 is 3 more than 1 + 2: {said}");
+        let said = message([1.0, 2.0, 3.0 + 1e-6]);
+        assert!(said.contains("it is 3.3e-5 % more"), "{said}");
+        let said = message([-1.0, -2.0, 3.0]);
+        assert!(said.contains("that sum is not positive"), "{said}");
     }
 
     #[test]
