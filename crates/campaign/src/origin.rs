@@ -38,16 +38,16 @@ impl Origin {
 
     /// Why there is no run table at a place: what was found, and, where a study that it is in kept no rows, or few, that.
     pub(crate) fn why_none(table: &Path, found: String) -> String {
-        let studies = table.ancestors().filter(|folder| !folder.as_os_str().is_empty()).take(4);
-        let mut studies = studies.filter_map(|folder| Some((folder, Manifest::read(folder).ok()?)));
-        let study = studies.next().map(|(folder, manifest)| (manifest.kept().rows(), folder));
-        match study.filter(|(rows, _)| !rows.is_all()) {
-            Some((rows, folder)) => format!(
+        let mut folders = table.ancestors().filter(|folder| !folder.as_os_str().is_empty()).take(4);
+        let study =
+            folders.find_map(|folder| Some((folder, Manifest::read(folder).ok()?.kept().rows())));
+        match study {
+            Some((folder, rows)) if !rows.is_all() => format!(
                 "{found}; the study in {} kept rows = \"{}\" of its run tables, and its report and summary.json hold its verdicts",
                 folder.display(),
                 rows.name()
             ),
-            None => found,
+            Some(_) | None => found,
         }
     }
 

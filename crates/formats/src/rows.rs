@@ -108,10 +108,17 @@ impl<'a> Rows<'a> {
 }
 
 /// Most lines above a header, titles and the like, that are looked through for it.
-pub(crate) const TITLES: usize = 100;
+const TITLES: usize = 100;
+
+/// The lines that a header may be, with their offsets: the first ones that are neither blank nor comments, or, where there is no
+/// other, the first comments.
+pub(crate) fn headers(text: &str, comments: bool) -> impl Iterator<Item = (usize, &str)> {
+    let is_one = move |line: &str| if comments { line.starts_with('#') } else { !is_comment(line) };
+    lines(text).filter(move |(_, line)| is_one(line)).take(TITLES)
+}
 
 /// The lines of a text with their offsets.
-pub(crate) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let mut at = 0;
     text.split_inclusive('\n').map(move |line| {
         at += line.len();

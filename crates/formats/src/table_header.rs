@@ -7,7 +7,7 @@ use crate::{
     heading_sign::without_sign,
     parts::heading::is_spread,
     product_heading::is_unread_product,
-    rows::{Field, Rows, TITLES, is_comment, lines},
+    rows::{Field, Rows, headers},
     spread,
     ten_heading::TenHeading,
     text::Text,
@@ -211,22 +211,20 @@ fn nearly(text: &Text, row: &[Field]) -> Option<String> {
 /// Finds the header, below any titles: what it says, and the rows below it. Where there is none, it may be a
 /// comment, as many programs write it.
 pub(crate) fn find_header(text: &Text) -> Result<(Header, Rows<'_>), Refusal> {
-    let lines = || lines(text.as_str());
-    for (at, line) in lines().filter(|(_, line)| !is_comment(line)).take(TITLES) {
+    let headers = |comments| headers(text.as_str(), comments);
+    for (at, line) in headers(false) {
         if let Some(found) = header_at(text, at, line)? {
             return Ok(found);
         }
     }
-    for (at, line) in lines().filter(|(_, line)| line.starts_with('#')).take(TITLES) {
+    for (at, line) in headers(true) {
         let content = line.trim_start_matches(['#', ' ', '\t']);
         let start = at + line.len() - content.len();
         if let Some(found) = header_at(text, start, content)? {
             return Ok(found);
         }
     }
-    let near = lines()
-        .filter(|(_, line)| !is_comment(line))
-        .take(TITLES)
+    let near = headers(false)
         .find_map(|(at, line)| nearly(text, &Rows::at(text.as_str(), at, line).row().ok()?));
     let mut message = "a table must have the columns ixx, iyy and izz".to_owned();
     if let Some(near) = near {

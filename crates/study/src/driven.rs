@@ -22,6 +22,13 @@ pub struct Drivers {
     pub(crate) identity: String,
 }
 
+impl Drivers {
+    /// Whether they are to be found again, where runs that failed are done again.
+    pub(crate) fn is_stale(&self, again: bool) -> bool {
+        again && self.failed > 0
+    }
+}
+
 /// What drives an output.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Driven {

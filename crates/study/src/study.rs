@@ -123,11 +123,8 @@ pub(crate) fn do_what_is_left<C: Subject>(
     let of = scenario.runs() * simulations.len() as u64;
     // Who puts together what others did does no runs.
     let asked = scenario.drivers().is_some() && doing == Doing::All;
-    // Runs that failed for the indices alone are done again with these.
-    let is_failed = |summary: C::Summary| summary.head().drivers.iter().any(|one| one.failed > 0);
-    let drivers_again = asked && retries && whole_summary::<C>(&place).is_some_and(is_failed);
+    let asked = asked.then_some(retries);
     if left == 0
-        && !drivers_again
         && let Some(study) = finished::<C>(&folder, &text, &simulations, &blocks, asked)?
     {
         if options.force {
@@ -342,20 +339,23 @@ pub(crate) fn foretell<C: Subject>(
     }
 }
 
-/// The study in a folder, if all of it is there as it was written, what drives its outcome too if that is asked.
+/// The study in a folder, if all of it is there as it was written, what drives its outcome too if that is asked: then whether it
+/// is found again where runs for it failed.
 fn finished<C: Subject>(
     folder: &Folder<'_>,
     text: &str,
     simulations: &[(&str, C::Simulation<'_>)],
     blocks: &Blocks,
-    drivers: bool,
+    drivers: Option<bool>,
 ) -> Result<Option<Study<C::Summary>>, StudyError> {
     if !(blocks.all_in_place() && folder.is_whole(text)?) {
         return Ok(None);
     }
     let place = folder.place().to_owned();
     let Some(summary) = whole_summary::<C>(&place) else { return Ok(None) };
-    if summary.head().drivers.is_empty() && drivers {
+    let there = &summary.head().drivers;
+    if drivers.is_some_and(|again| there.is_empty() || there.iter().any(|one| one.is_stale(again)))
+    {
         return Ok(None);
     }
     let empty = empty_tables(simulations)?;

@@ -28,14 +28,14 @@ const LOOKED: &str = "looked";
 /// A line of a record: a block, and of which campaign it is. Records that somebody copied into the folder of another campaign
 /// tell of none of its blocks.
 #[derive(Debug, Serialize, Deserialize)]
-struct Line {
-    campaign: String,
-    block: Block,
+struct Line<C, B> {
+    campaign: C,
+    block: B,
 }
 
-/// The line of a record that tells of a block.
-pub(super) fn line(identity: &Identity, block: &Block) -> Result<String, Problem> {
-    Ok(serde_json::to_string(&Line { campaign: identity.word(), block: block.clone() })?)
+/// The line of a record that tells of a block of the campaign with this word.
+pub(super) fn line(campaign: &str, block: &Block) -> Result<String, Problem> {
+    Ok(serde_json::to_string(&Line { campaign, block })?)
 }
 
 /// The folder of an unfinished campaign.
@@ -205,7 +205,8 @@ impl Area {
         let mut seen = BTreeSet::new();
         let lines = texts.iter().flat_map(|text| text.split(|byte| *byte == b'\n'));
         let lines = lines.filter(|line| !line.is_empty() && seen.insert(*line));
-        let lines = lines.filter_map(|line| serde_json::from_slice::<Line>(line).ok());
+        let lines =
+            lines.filter_map(|line| serde_json::from_slice::<Line<String, Block>>(line).ok());
         let own = lines.filter(|line| line.campaign == campaign).map(|line| line.block);
         Ok(own.filter(Block::is_sound).collect())
     }
@@ -217,8 +218,9 @@ impl Area {
 
     /// One record of these blocks in place of all.
     pub(super) fn rewrite(&self, identity: &Identity, blocks: &[&Block]) -> Result<File, Problem> {
+        let campaign = identity.word();
         let lines =
-            blocks.iter().map(|block| line(identity, block)).collect::<Result<Vec<_>, _>>()?;
+            blocks.iter().map(|block| line(&campaign, block)).collect::<Result<Vec<_>, _>>()?;
         let path = self.0.join(RECORD);
         self.replace(RECORD, &(lines.join("\n") + "\n"))?;
         for record in self.records()?.iter().filter(|record| **record != path) {

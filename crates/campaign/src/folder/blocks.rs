@@ -397,7 +397,7 @@ impl Blocks {
         disk::sync_folder(&folder)?;
         disk::sync_folder(self.area.path())?;
         let mut state = self.locked();
-        let line = format!("\n{}\n", line(&self.identity, &block)?);
+        let line = format!("\n{}\n", line(&self.identity.word(), &block)?);
         disk::append(&state.record, &self.record, &line)?;
         state.blocks.retain(|b| !(b.model == block.model && b.first_run == block.first_run));
         state.blocks.push(block);

@@ -103,10 +103,11 @@ fn write(
         }
         // A folder is rarely called like a file: an extension that tells no table is a slip.
         Some(path) if path.extension().is_some() && !path.is_dir() && !ends_in_slash(path) => {
-            let message = "it ends like a file and like no table, which ends in .csv, .jsonl, .npy or .parquet";
             let name = path.display();
-            Err(format!("{name}: {message}; a folder of this name must be written as {name}/")
-                .into())
+            Err(format!(
+                "{name}: the name of a table must end in .csv, .jsonl, .npy or .parquet; a folder of this name must be written as {name}/"
+            )
+            .into())
         }
         Some(folder) => {
             let robots = arguments.runs.unwrap_or_default();

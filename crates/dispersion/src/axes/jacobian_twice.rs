@@ -7,8 +7,7 @@ use rand_distr::Distribution;
 use std::sync::OnceLock;
 
 use super::LN_PI_SQUARED;
-use super::half_sphere::HalfSphere;
-use super::whole_sphere::WholeSphere;
+use super::weighted_half::WeightedHalf;
 
 /// Why a law cannot have its Jacobian counted twice.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -143,12 +142,7 @@ impl JacobianTwice {
 
     fn ln_mean(&self) -> f64 {
         *self.ln_mean.get_or_init(|| {
-            let half = HalfSphere::new(&self.law, second_jacobian);
-            libm::log(if half.is_whole(&self.law) {
-                half.mean_of_weight(&self.law)
-            } else {
-                WholeSphere::new(&self.law, second_jacobian).mean_of_weight()
-            })
+            libm::log(WeightedHalf::new(&self.law, second_jacobian).mean_of_weight())
         })
     }
 
@@ -306,7 +300,8 @@ mod tests {
             };
             let ((drawn, error), found) = (moments(&weights), libm::exp(twice.ln_mean()));
             assert!((found - drawn).abs() < 4.0 * error, "{seed}: {found} {drawn} ± {error}");
-            ways[usize::from(HalfSphere::new(&plain, second_jacobian).is_whole(&plain))] += 1;
+            let half = WeightedHalf::new(&plain, second_jacobian);
+            ways[usize::from(matches!(half, WeightedHalf::Cubature(..)))] += 1;
             let entries = twice.entry_moments(&k);
             let draws: Vec<Matrix3<f64>> = (0..N)
                 .map(|_| {

@@ -5,6 +5,7 @@ mod half_sphere;
 mod jacobian_twice;
 mod law;
 mod moments;
+mod weighted_half;
 mod whole_sphere;
 
 use gyradius_attitude::UniformAttitude;

@@ -7,9 +7,8 @@ use nalgebra::{Matrix3, SMatrix, UnitQuaternion};
 use std::f64::consts::LN_2;
 
 use super::LN_PI_SQUARED;
-use super::half_sphere::HalfSphere;
 use super::jacobian_twice::second_jacobian;
-use super::whole_sphere::WholeSphere;
+use super::weighted_half::WeightedHalf;
 use crate::entry_moments::{ENTRIES, expected_forms};
 use crate::{EntryMoments, FixedAttitude, JacobianTwice, SecondMomentStatistics};
 
@@ -151,15 +150,10 @@ impl AttitudeMoments for FixedAttitude {
 /// half: then by quadrature over the angles of the whole sphere, to better than 1e-2.
 impl AttitudeMoments for MeanHalf {
     fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
-        let far = self.whole().far_half_share();
-        if far < 1e-14 {
+        if self.whole().far_half_share() < 1e-14 {
             return self.whole().entry_moments(k);
         }
-        let half = HalfSphere::new(self.whole(), |_| 1.0);
-        if half.is_whole(self.whole()) {
-            return EntryMoments::by_quadrature(k, half.nodes());
-        }
-        EntryMoments::by_expectation(k, &WholeSphere::new(self.whole(), |_| 1.0))
+        WeightedHalf::new(self.whole(), |_| 1.0).entry_moments(k)
     }
 
     fn ln_density_of_attitude(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
@@ -175,11 +169,7 @@ impl AttitudeMoments for MeanHalf {
 /// edges. Where a ridge escapes it, as for [`MeanHalf`].
 impl AttitudeMoments for JacobianTwice {
     fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
-        let half = HalfSphere::new(self.once(), second_jacobian);
-        if half.is_whole(self.once()) {
-            return EntryMoments::by_quadrature(k, half.nodes());
-        }
-        EntryMoments::by_expectation(k, &WholeSphere::new(self.once(), second_jacobian))
+        WeightedHalf::new(self.once(), second_jacobian).entry_moments(k)
     }
 
     fn ln_density_of_attitude(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
@@ -189,6 +179,7 @@ impl AttitudeMoments for JacobianTwice {
 
 #[cfg(test)]
 mod tests {
+    use super::super::whole_sphere::WholeSphere;
     use super::*;
     use crate::{AxesLaw, KnownMoments, PrincipalDispersion, ScalarRoots};
     use gyradius_inertia::{Inertia, RootSecondMoments};

@@ -302,14 +302,24 @@ fn gyration(text: &str) -> Option<Heading> {
         let before = ["radiusofgyration", "gyrationradius", "gyradius", "rg", "k"];
         before.iter().find_map(|word| axis(plain.strip_prefix(word)?))
     };
-    let (axis, tail) = longest_name(text, known)?;
-    match tail.unit(Dimension::Length)? {
-        Ok(unit) => {
-            let stated = (!unit.text.is_empty()).then_some(unit.si);
-            Some(Heading::Column(Column::Gyration(axis, stated)))
-        }
-        Err(bad) => bad.is_certain.then_some(Heading::SizeUnit(GYRATION[axis], bad)),
+    match length(text, known)? {
+        (axis, Ok(unit)) => Some(Heading::Column(Column::Gyration(axis, unit))),
+        (axis, Err(bad)) => Some(Heading::SizeUnit(GYRATION[axis], bad)),
     }
+}
+
+/// A length by its name: what it is, and its unit in SI, if one is stated, or what follows and is certain to be no unit.
+fn length<T>(
+    text: &str,
+    known: impl Fn(&str) -> Option<T>,
+) -> Option<(T, Result<Option<f64>, BadUnit>)> {
+    let (found, tail) = longest_name(text, known)?;
+    let unit = match tail.unit(Dimension::Length)? {
+        Ok(unit) => Ok((!unit.text.is_empty()).then_some(unit.si)),
+        Err(bad) if bad.is_certain => Err(bad),
+        Err(_) => return None,
+    };
+    Some((found, unit))
 }
 
 /// A size of a shape: `radius_mm`, `Height [in]`.
@@ -317,10 +327,9 @@ fn size(text: &str) -> Option<Heading> {
     let name = |size: &'static str| size.strip_suffix("_m").unwrap_or(size);
     let known =
         |plain: &str| Shape::SIZES.iter().copied().find(|size| squeezed(name(size)) == plain);
-    let (size, tail) = longest_name(text, known)?;
-    match tail.unit(Dimension::Length)? {
-        Ok(unit) => Some(Heading::Size(size, (!unit.text.is_empty()).then_some(unit.si))),
-        Err(bad) => bad.is_certain.then_some(Heading::SizeUnit(size, bad)),
+    match length(text, known)? {
+        (size, Ok(unit)) => Some(Heading::Size(size, unit)),
+        (size, Err(bad)) => Some(Heading::SizeUnit(size, bad)),
     }
 }
 

@@ -17,7 +17,7 @@ use crate::{
     body::shortened,
     error::Refusal,
     products_comment::stated_products,
-    rows::{Field, Rows, TITLES, is_comment, lines},
+    rows::{Field, Rows, headers},
     text::Text,
     units::{Unit, squeezed},
 };
@@ -268,8 +268,7 @@ fn header(text: &Text) -> Result<Option<(usize, Vec<String>, Rows<'_>)>, PartsEr
             && has(|heading| matches!(heading, Heading::Column(Column::Value(0, _))));
         is_header.then_some((first, rows))
     };
-    let mut titles = lines(text.as_str()).filter(|(_, line)| !is_comment(line)).take(TITLES);
-    let (first, mut rows) = match titles.find_map(at) {
+    let (first, mut rows) = match headers(text.as_str(), false).find_map(at) {
         Some(found) => found,
         None => {
             let mut rows = Rows::new(text.as_str());

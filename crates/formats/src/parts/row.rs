@@ -208,13 +208,14 @@ impl Cells<'_> {
         }
         let [mass_kg, x, y, z] = std::array::from_fn(|i| values[i].unwrap_or_default());
         let shape = self.shape()?;
-        let six = self.inertia(shape, mass_kg, std::array::from_fn(|e| values[4 + e]))?;
+        let radii = self.gyration(mass_kg)?;
+        let six = self.inertia(shape, radii, mass_kg, std::array::from_fn(|e| values[4 + e]))?;
         let [i11, i22, i33, i12, i13, i23] = six;
         let inertia = InertiaMatrix::from_entries([i11, i22, i33], [i12, i13, i23])
             .map_err(|error| PartsProblem::Shape { message: error.to_string() })?;
         let nominal = [mass_kg, x, y, z, i11, i22, i33, i12, i13, i23];
         let inertia_follows_mass = match self.text(Column::Follows) {
-            None => matches!(shape, Some(Some(_))) || self.gyration(mass_kg)?.is_some(),
+            None => matches!(shape, Some(Some(_))) || radii.is_some(),
             Some(word) => boolean("inertia_follows_mass", word)?,
         };
         Ok(Some(PartNumbers {
@@ -260,21 +261,21 @@ impl Cells<'_> {
         })
     }
 
-    /// Six entries of the tensor, in the part's axes.
+    /// Six entries of the tensor, in the part's axes; `radii` are the moments that radii of gyration say.
     fn inertia(
         &self,
         shape: Option<Option<Shape>>,
+        radii: Option<[f64; 3]>,
         mass_kg: f64,
         given: [Option<f64>; 6],
     ) -> Result<[f64; 6], PartsProblem> {
-        if let Some(moments) = self.gyration(mass_kg)? {
-            if given.iter().flatten().any(|entry| *entry != 0.0) || shape.is_some() {
+        let any = given.iter().flatten().any(|entry| *entry != 0.0);
+        if let Some([i11, i22, i33]) = radii {
+            if any || shape.is_some() {
                 return Err(PartsProblem::Twice { field: "the inertia" });
             }
-            let [a, b, c] = moments;
-            return Ok([a, b, c, 0.0, 0.0, 0.0]);
+            return Ok([i11, i22, i33, 0.0, 0.0, 0.0]);
         }
-        let any = given.iter().flatten().any(|entry| *entry != 0.0);
         match shape {
             Some(shape) if any => {
                 let shape = if shape.is_some() { "shape" } else { "point" };

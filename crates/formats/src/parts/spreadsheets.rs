@@ -1,11 +1,7 @@
 //! Lists of parts as spreadsheets have them: titles, rows of units, totals, columns of other things.
 
-use super::*;
+use super::tests::read;
 use proptest::prelude::*;
-
-fn read(text: &str) -> Result<PartsTable, PartsError> {
-    PartsTable::read(text.as_bytes(), None)
-}
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]

@@ -3,7 +3,7 @@
 use super::*;
 use proptest::prelude::*;
 
-fn read(text: &str) -> Result<PartsTable, PartsError> {
+pub(super) fn read(text: &str) -> Result<PartsTable, PartsError> {
     PartsTable::read(text.as_bytes(), None)
 }
 

@@ -1,6 +1,6 @@
 //! Columns that would change the numbers of a row, and are not read.
 
-use crate::{spread::words, units::squeezed};
+use crate::spread::words;
 
 /// What would change the numbers of a row, and is not read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,6 +20,8 @@ pub enum Unread {
 type Words = (Unread, &'static [&'static str], &'static [&'static str]);
 
 const KINDS: [Words; 4] = [
+    // Before counts: `units` alone are those of the row.
+    (Unread::Unit, &["unit", "units", "uom"], &["mass", "of"]),
     (
         Unread::Count,
         &[
@@ -112,7 +114,6 @@ const KINDS: [Words; 4] = [
             "and",
         ],
     ),
-    (Unread::Unit, &["unit", "units", "uom"], &["mass", "of"]),
 ];
 
 impl Unread {
@@ -124,9 +125,7 @@ impl Unread {
             let is_key = |word: &&str| keys.contains(word);
             all.iter().any(is_key) && all.iter().all(|word| is_key(word) || beside.contains(word))
         };
-        // `units` alone are those of the row.
-        let found = KINDS.iter().find(is_of).map(|(kind, ..)| *kind);
-        if squeezed(&lower) == "units" { Some(Self::Unit) } else { found }
+        KINDS.iter().find(is_of).map(|(kind, ..)| *kind)
     }
 
     /// Whether a cell says nothing that would change the row.

@@ -56,7 +56,7 @@ impl<C: Subject> Finding<'_, '_, C> {
         let again = self.options.retry_failed;
         let known = |head: &Head| {
             let same = |drivers: &Drivers| {
-                let is_stale = again && drivers.failed > 0;
+                let is_stale = drivers.is_stale(again);
                 drivers.identity == identity && drivers.base_runs == base && !is_stale
             };
             head.drivers.len() == names.len() && head.drivers.iter().all(same)
