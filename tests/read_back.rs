@@ -279,9 +279,9 @@ proptest! {
         while !search.is_done() {
             search.tell(&vec![(vec![0.5], -1.0); 100]).unwrap();
         }
-        let mut steered = SteeredSampling::new(&[search]).unwrap();
+        let mut steered = SteeredSampling::new(&search).unwrap();
         for (x, y) in x.iter().zip(&y) {
-            steered.push(0.5, &[*x], *y).unwrap();
+            steered.push(&[*x], *y).unwrap();
         }
         let subset = SubsetSimulation::new(2, 100, 2).unwrap();
         let excess = |draws: &[u64]| (draws[0] % 97) as f64 - 50.0;

@@ -79,6 +79,10 @@ macro_rules! laws {
                 match self { $(Self::$law(law) => law.reach(far),)* }
             }
 
+            pub(super) fn atoms(&self) -> Option<Vec<(f64, f64)>> {
+                match self { $(Self::$law(law) => law.atoms(),)* }
+            }
+
             #[inline]
             pub(super) fn draw<R: Rng + ?Sized>(&self, rng: &mut R) -> f64 {
                 match self { $(Self::$law(law) => law.draw(rng),)* }
@@ -265,6 +269,11 @@ impl ScalarLaw {
     /// What no draw exceeds in magnitude, `far` standard deviations of what is normal in it taken for all.
     pub(crate) fn reach(&self, far: f64) -> f64 {
         self.0.reach(far)
+    }
+
+    /// All values in rising order with their probabilities, of a law of single values.
+    pub(crate) fn atoms(&self) -> Option<Vec<(f64, f64)>> {
+        self.0.atoms()
     }
 }
 

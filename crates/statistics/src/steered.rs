@@ -3,21 +3,15 @@
 mod fit;
 mod score_law;
 mod search;
+mod way;
 
 pub use score_law::ScoreLaw;
 pub use search::ScoreSearch;
-
-use score_law::OWN;
 
 use crate::{
     Confidence, ImportanceEstimate, ImportanceSampling, Interval, Proportion, StatisticsError,
     WeightWarning, importance::RARE,
 };
-
-/// So many standard errors between what two searches make of the event are no chance.
-const APART: f64 = 4.0;
-/// Differences below this factor are of no concern.
-const ALIKE: f64 = 1.15;
 
 /// Importance sampling in normal scores: from a law that searches have found, with exact weights.
 ///
@@ -25,9 +19,8 @@ const ALIKE: f64 = 1.15;
 /// the weight of a run is the density of its scores under the standard normal law over that under the law which they were drawn
 /// from. What else a run draws keeps its law, and has no part in the weight.
 ///
-/// Independent [searches](ScoreSearch) find where the event is; the sample is drawn from the mixture of what all of them found and
-/// a tenth of the own law, so that no weight is above 10. What one of them found alone can therefore not be lost, and shows: if they
-/// tell different probabilities, there are several ways to the event, and perhaps more than both have found.
+/// A [search](ScoreSearch) finds where the event is, way by way, until nothing is left of it that matters; the sample is drawn from the
+/// mixture of what it found and a tenth of the own law, so that no weight is above 10.
 ///
 /// ```
 /// use gyradius_statistics::{Confidence, ScoreSearch, SteeredSampling, tail};
@@ -49,22 +42,19 @@ const ALIKE: f64 = 1.15;
 /// let mut run = |law: &gyradius_statistics::ScoreLaw| {
 ///     number += 1;
 ///     let mut scores = [0, 1, 2].map(|place| normal(number, place)).to_vec();
-///     let choice = uniform(number, 3);
-///     law.draw(choice, &mut scores);
-///     (choice, scores)
+///     law.draw(uniform(number, 3), &mut scores);
+///     scores
 /// };
-/// let mut searches = [ScoreSearch::new(3, 500)?, ScoreSearch::new(3, 500)?];
-/// for search in &mut searches {
-///     while !search.is_done() {
-///         let runs = (0..search.asks()).map(|_| run(search.law()).1);
-///         let runs: Vec<(Vec<f64>, f64)> = runs.map(|scores| (scores.clone(), excess(&scores))).collect();
-///         search.tell(&runs)?;
-///     }
+/// let mut search = ScoreSearch::new(3, 500)?;
+/// while !search.is_done() {
+///     let runs = (0..search.asks()).map(|_| run(search.law()));
+///     let runs: Vec<(Vec<f64>, f64)> = runs.map(|scores| (scores.clone(), excess(&scores))).collect();
+///     search.tell(&runs)?;
 /// }
-/// let mut sample = SteeredSampling::new(&searches)?;
+/// let mut sample = SteeredSampling::new(&search)?;
 /// for _ in 0..2000 {
-///     let (choice, scores) = run(sample.law());
-///     sample.push(choice, &scores, excess(&scores))?;
+///     let scores = run(sample.law());
+///     sample.push(&scores, excess(&scores))?;
 /// }
 /// let estimate = sample.finish(Confidence::default())?;
 /// assert!(estimate.interval().contains(tail::normal(9.0 / 3_f64.sqrt())), "{estimate:?}");
@@ -76,73 +66,43 @@ pub struct SteeredSampling {
     /// The law that scores are to be drawn from.
     #[getset(get = "pub")]
     law: ScoreLaw,
-    /// The law of those draws that are of what a search found, or of the own law.
-    of_search: Vec<ScoreLaw>,
-    /// For each part of the law the search that found it; none for the own law.
-    searches: Vec<Option<usize>>,
     not_reached: usize,
+    unsettled: Option<usize>,
     evaluations: u64,
     without_excess: u64,
     hits: ImportanceSampling,
-    hits_of_search: Vec<ImportanceSampling>,
 }
 
 impl SteeredSampling {
-    /// Of searches that are done.
+    /// Of a search that is done.
     ///
     /// # Errors
     ///
-    /// [`StatisticsError::TooFew`] without a search or if one is not done, [`StatisticsError::Columns`] if they are of different numbers
-    /// of scores.
-    pub fn new(searches: &[ScoreSearch]) -> Result<Self, StatisticsError> {
-        let first = searches.first().ok_or(StatisticsError::TooFew { n: 0, required: 1 })?;
-        if let Some(search) = searches.iter().find(|search| !search.is_done()) {
+    /// [`StatisticsError::TooFew`] if it is not.
+    pub fn new(search: &ScoreSearch) -> Result<Self, StatisticsError> {
+        if !search.is_done() {
             let n = usize::try_from(search.evaluations()).unwrap_or(usize::MAX);
             return Err(StatisticsError::TooFew { n, required: n.saturating_add(search.asks()) });
         }
-        let scores = first.law().scores();
-        for search in searches {
-            crate::rank_correlation::same_length(scores, search.law().scores())?;
-        }
-        let laws: Vec<ScoreLaw> = searches.iter().map(|search| search.law().clone()).collect();
-        let (law, of_part) = ScoreLaw::together(&laws, OWN);
-        let hits = ImportanceSampling::new();
         Ok(Self {
-            not_reached: searches.iter().filter(|search| !search.reached()).count(),
-            evaluations: searches.iter().map(ScoreSearch::evaluations).sum(),
-            without_excess: searches.iter().map(ScoreSearch::without_excess).sum(),
-            hits,
-            hits_of_search: vec![hits; searches.len()],
-            of_search: (0..searches.len())
-                .map(|i| law.of_parts(|part| of_part[part].is_none_or(|of| of == i)))
-                .collect(),
-            law,
-            searches: of_part,
+            law: search.law().clone(),
+            not_reached: search.not_reached(),
+            unsettled: search.unsettled(),
+            evaluations: search.evaluations(),
+            without_excess: search.without_excess(),
+            hits: ImportanceSampling::new(),
         })
     }
 
-    /// Adds a run: the number between 0 and 1 by which the part of the law was chosen, its scores, and how far it is beyond the limit. The
-    /// event is an excess of 0 or more; NaN is a run that has none, as one that failed, and is not the event.
+    /// Adds a run: its scores, and how far it is beyond the limit. The event is an excess of 0 or more; NaN is a run that has none, as
+    /// one that failed, and is not the event.
     ///
     /// # Errors
     ///
     /// [`StatisticsError::Columns`] if there are not as many scores as the law has, [`StatisticsError::LogWeight`] if one is not finite.
-    pub fn push(
-        &mut self,
-        choice: f64,
-        scores: &[f64],
-        excess: f64,
-    ) -> Result<(), StatisticsError> {
+    pub fn push(&mut self, scores: &[f64], excess: f64) -> Result<(), StatisticsError> {
         crate::rank_correlation::same_length(self.law.scores(), scores.len())?;
-        let (log_weight, hit) = (self.law.log_weight(scores), excess >= 0.0);
-        self.hits.push(log_weight, hit)?;
-        // A run from the own law serves every search.
-        let of_part = self.searches.get(self.law.part(choice)).copied().flatten();
-        for (i, (law, hits)) in self.of_search.iter().zip(&mut self.hits_of_search).enumerate() {
-            if of_part.is_none_or(|search| search == i) {
-                hits.push(law.log_weight(scores), hit)?;
-            }
-        }
+        self.hits.push(self.law.log_weight(scores), excess >= 0.0)?;
         self.evaluations += 1;
         self.without_excess += u64::from(excess.is_nan());
         Ok(())
@@ -160,8 +120,7 @@ impl SteeredSampling {
         if self.not_reached > 0 {
             warnings.push(SteeredWarning::NotReached { searches: self.not_reached });
         }
-        let apart = self.apart(confidence);
-        warnings.extend(apart.map(|[one, other]| SteeredWarning::SearchesDiffer { one, other }));
+        warnings.extend(self.unsettled.map(|searches| SteeredWarning::MoreWays { searches }));
         warnings.extend(weighted.warnings().iter().copied().map(SteeredWarning::Weights));
         let (lower, upper) = if weighted.hits() > 0 {
             (weighted.interval().lower(), weighted.interval().upper())
@@ -201,29 +160,6 @@ impl SteeredSampling {
         }
         let error = missed * misses.coefficient_of_variation().unwrap_or(0.0);
         Ok((rest, Some(error / rest)))
-    }
-
-    /// What two searches tell of the event, the most different ones, if that is no chance.
-    fn apart(&self, confidence: Confidence) -> Option<[f64; 2]> {
-        let told = self.hits_of_search.iter().filter_map(|hits| hits.finish(confidence).ok());
-        // Where each search found as much elsewhere, all together tell more than any of them.
-        let told: Vec<(f64, f64)> = told
-            .chain(self.hits.finish(confidence).ok())
-            .map(|found| (found.probability(), found.coefficient_of_variation().unwrap_or(1.0)))
-            .collect();
-        let mut worst = None;
-        for (i, one) in told.iter().enumerate() {
-            for other in &told[..i] {
-                let difference = (one.0 - other.0).abs();
-                let error = (one.0 * one.1).hypot(other.0 * other.1);
-                let (low, high) = (one.0.min(other.0), one.0.max(other.0));
-                let z = difference / error;
-                if high > ALIKE * low && z > APART && worst.is_none_or(|(before, _)| z > before) {
-                    worst = Some((z, [low, high]));
-                }
-            }
-        }
-        worst.map(|(_, told)| told)
     }
 }
 
@@ -272,13 +208,10 @@ pub enum SteeredWarning {
         /// How many.
         searches: usize,
     },
-    /// Runs where one search led tell another probability than runs where another led, or than all runs together, by more than four
-    /// standard errors: the searches have found different ways to the event.
-    SearchesDiffer {
-        /// The smaller probability.
-        one: f64,
-        /// The larger.
-        other: f64,
+    /// So many searches left open whether there are more ways to the event than they found.
+    MoreWays {
+        /// How many.
+        searches: usize,
     },
     /// What the weights show.
     #[cfg_attr(feature = "serde", serde(untagged))]

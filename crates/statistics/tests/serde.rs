@@ -121,10 +121,10 @@ fn drivers_and_rare_events_are_read_back() {
     while !search.is_done() {
         search.tell(&vec![(vec![0.5], -1.0); 100]).unwrap();
     }
-    let mut sample = SteeredSampling::new(&[search]).unwrap();
+    let mut sample = SteeredSampling::new(&search).unwrap();
     for excess in [f64::NAN, -1.0, 1.0] {
-        sample.push(0.5, &[0.5], excess).unwrap();
-        sample.push(0.5, &[2.5], -1.0).unwrap();
+        sample.push(&[0.5], excess).unwrap();
+        sample.push(&[2.5], -1.0).unwrap();
         back::<SteeredEstimate>(&sample.finish(confidence).unwrap());
     }
     let plan = SubsetSimulation::new(2, 100, 2).unwrap();

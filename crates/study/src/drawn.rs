@@ -12,7 +12,7 @@ use crate::{
     failure::RunFailure,
     groups::{BodyLaw, Drawing, Groups},
     scenario::{Dispersions, Each, Joint, Number, Scenario, Size, Target},
-    steering::{Steered, Steering},
+    steering::Steering,
 };
 
 /// What a model draws: the laws of its bodies, the random streams of its dispersions, one for each quantity, and its groups.
@@ -56,19 +56,18 @@ impl Draws {
         Taken { mix, size, steering: drawing.steering() }
     }
 
-    /// What so many runs chose that are steered, and their scores.
+    /// The scores of so many runs that are steered, before they are correlated.
     pub(crate) fn steered<T>(
         &self,
         joint: &Joint<T>,
         drawing: &Drawing,
         size: Size,
         runs: u64,
-    ) -> Vec<Steered> {
+    ) -> Vec<Vec<f64>> {
         let Some(steering) = drawing.steering() else { return Vec::new() };
         let of = |run| {
             let taken = self.taken(drawing, size, run);
-            let scores = steering.of(&self.scores(joint, taken));
-            Steered { choice: steering.choice(taken.mix.base()), scores }
+            steering.of(&self.scores(joint, taken))
         };
         (0..runs).map(of).collect()
     }

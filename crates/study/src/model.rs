@@ -12,7 +12,6 @@ use crate::{
     groups::{BodyLaw, Drawing, Groups},
     run::{Case, Run},
     scenario::{KeptShares, Law, ModelLaw, ModelSpec, Scenario, ScenarioError, UncertainBody},
-    steering::Steered,
     unmatched::UnmatchedLaw,
 };
 
@@ -149,7 +148,7 @@ impl<'a> Separations<'a> {
     }
 
     /// The scores of so many runs, if they are steered.
-    pub(crate) fn scores(&self, runs: u64) -> Vec<Steered> {
+    pub(crate) fn scores(&self, runs: u64) -> Vec<Vec<f64>> {
         let (joint, size) = (&self.scenario.dispersions().joint, self.scenario.size());
         self.model.draws.steered(joint, &self.drawing, size, runs)
     }

@@ -237,9 +237,9 @@ fn of_scores(warning: &SteeredWarning) -> String {
             "{searches} searches did not come to the event: it cannot be, or is rarer than --least, or what is drawn from its own law \
              decides; neither estimate nor interval should be trusted; take --method subset, or more runs of a level"
         ),
-        SteeredWarning::SearchesDiffer { one, other } => format!(
-            "runs where one search led tell {one:.1e}, and runs where another led {other:.1e}: there are several ways to the \
-             event, and there may be more than were found; take more runs of a level, or --method subset"
+        SteeredWarning::MoreWays { searches } => format!(
+            "{searches} searches left open whether there are more ways to the event than they found: take more runs of a level, or \
+             --method subset"
         ),
         SteeredWarning::Weights(warning) => of_weights(warning),
     }

@@ -15,7 +15,6 @@ use crate::{
     quantity::Quantity,
     report,
     seen::{Looking, Seen},
-    steering::Steered,
     subject::{Grouped, Subject},
     summary::ModelSummary,
     unusual::DrawnInput,
@@ -26,7 +25,7 @@ impl Grouped for Separations<'_> {
         self.model().groups()
     }
 
-    fn steered(&self, runs: u64) -> Vec<Steered> {
+    fn steered(&self, runs: u64) -> Vec<Vec<f64>> {
         self.scores(runs)
     }
 

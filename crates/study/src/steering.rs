@@ -41,7 +41,7 @@ impl Steering {
     }
 
     /// The number between 0 and 1 by which a run chooses the part of the law.
-    pub(crate) fn choice(&self, run: u64) -> f64 {
+    fn choice(&self, run: u64) -> f64 {
         StandardUniform.sample(&mut self.choices.run(run))
     }
 
@@ -60,13 +60,4 @@ impl Steering {
     pub(crate) fn of(&self, scores: &[f64]) -> Vec<f64> {
         self.places.iter().filter_map(|place| scores.get(*place).copied()).collect()
     }
-}
-
-/// What a run of a steered law chose, and its scores.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Steered {
-    /// The number between 0 and 1 that chose the part of the law.
-    pub(crate) choice: f64,
-    /// Those that are steered, before they are correlated.
-    pub(crate) scores: Vec<f64>,
 }

@@ -16,7 +16,6 @@ use crate::{
     groups::{Drawing, Groups},
     head::Head,
     scenario::Framed,
-    steering::Steered,
     unusual::DrawnInput,
 };
 
@@ -113,7 +112,7 @@ pub(crate) trait Grouped: Simulation {
     /// The groups of inputs that the model draws independently of each other.
     fn groups(&self) -> &Groups;
     /// The scores of so many of these runs; none unless they are steered.
-    fn steered(&self, runs: u64) -> Vec<Steered>;
+    fn steered(&self, runs: u64) -> Vec<Vec<f64>>;
     /// The same, of whose columns only those of these names are wanted: its runs may leave out others.
     fn wanted(self, names: &[String]) -> Self;
 }

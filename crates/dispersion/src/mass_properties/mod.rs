@@ -15,6 +15,7 @@ mod pseudo_inertia_wishart;
 #[cfg(test)]
 mod rival_tests;
 mod scores;
+mod steps;
 mod ten_moments;
 mod ten_parameters;
 mod ten_sums;

@@ -3,6 +3,7 @@
 use nalgebra::DMatrix;
 use std::{cell::RefCell, collections::HashMap, rc::Rc, sync::LazyLock};
 
+use super::steps::{Over, Steps};
 use crate::{Correlation, ScalarLaw};
 
 /// How many scalars a joint law has at most: mass, three of the centre, three of the shape.
@@ -64,6 +65,12 @@ struct Pair {
     second: f64,
     product: f64,
     covariance: f64,
+}
+
+impl Nodes {
+    fn new(weights: Vec<f64>, values: Vec<f64>) -> Self {
+        Self { weights, values, monomials: RefCell::default(), pairs: RefCell::default() }
+    }
 }
 
 impl<F: Fn(f64) -> f64> Scores<'_, F> {
@@ -161,11 +168,19 @@ impl<F: Fn(f64) -> f64> Scores<'_, F> {
     /// Weights and values of the scalars of a block.
     ///
     /// Of normal scalars the monomials are polynomials, and with the scores of these last, which the others do not depend on, a few nodes are
-    /// exact for them. The first scalar may be taken by its factor.
+    /// exact for them. The first scalar may be taken by its factor. Laws of single values stand before all others.
     fn nodes(&self, block: &[usize]) -> Nodes {
+        let mut atoms: Vec<_> = block.iter().map(|&scalar| self.laws[scalar].atoms()).collect();
+        if let [Some(atoms)] = atoms.as_slice() {
+            return Nodes::new(
+                atoms.iter().map(|atom| atom.1).collect(),
+                atoms.iter().map(|atom| atom.0).collect(),
+            );
+        }
         let is_exact = |&at: &usize| block[at] > 0 && self.laws[block[at]].as_normal().is_some();
         let (mut order, last): (Vec<usize>, Vec<usize>) =
             (0..block.len()).partition(|at| !is_exact(at));
+        order.sort_by_key(|&at| atoms[at].is_none());
         let many = order.len();
         order.extend(last);
         let rule = |i: usize| -> &[(f64, f64)] {
@@ -178,13 +193,17 @@ impl<F: Fn(f64) -> f64> Scores<'_, F> {
             .collect();
         // Of correlations a part is correlations, too.
         let correlation = Correlation::new(&pairs).unwrap_or_default();
+        if atoms.iter().any(Option::is_some) {
+            let over = order.iter().enumerate().map(|(i, &at)| match atoms[at].take() {
+                Some(atoms) => Over::Atoms(atoms),
+                None => Over::Rule(self.laws[block[at]], rule(i)),
+            });
+            let (weights, values) = Steps::new(&correlation, over.collect(), &order).nodes();
+            return Nodes::new(weights, values);
+        }
         let count = (0..block.len()).map(|i| rule(i).len()).product();
-        let mut nodes = Nodes {
-            weights: Vec::with_capacity(count),
-            values: Vec::with_capacity(count * block.len()),
-            monomials: RefCell::default(),
-            pairs: RefCell::default(),
-        };
+        let mut nodes =
+            Nodes::new(Vec::with_capacity(count), Vec::with_capacity(count * block.len()));
         let mut scores = vec![0.0; block.len()];
         for node in 0..count {
             let (mut weight, mut rest) = (1.0, node);
@@ -207,7 +226,7 @@ impl<F: Fn(f64) -> f64> Scores<'_, F> {
 
 /// The rules for each of one scalar, of two, of three and of more.
 static RULES: [LazyLock<Vec<(f64, f64)>>; 4] = [
-    // Laws with corners want many nodes, and those with steps, too.
+    // Laws with corners want many nodes.
     LazyLock::new(panels),
     LazyLock::new(|| hermite(48)),
     LazyLock::new(|| hermite(24)),
@@ -252,6 +271,9 @@ mod tests {
     use super::*;
     use nalgebra::SMatrix;
     use proptest::prelude::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
 
     /// E Π x_i over the listed scalars (Isserlis 1918, doi:10.1093/biomet/12.1-2.134).
     fn product(of: &[usize], mean: &[f64; 7], c: &SMatrix<f64, 7, 7>) -> f64 {
@@ -315,6 +337,147 @@ mod tests {
                     prop_assert!(gap.abs() < allowed, "{of_f:?} {of_g:?}: {gap:e} {allowed:e}");
                 }
             }
+        }
+    }
+
+    /// E 1{z₁ > a, z₂ > b} of standard normal scores (Plackett 1954, doi:10.1093/biomet/41.3-4.351): Φ(−a)Φ(−b) and the integral of their
+    /// density over the coefficients up to theirs, by Simpson's rule in its angle.
+    fn both_above(a: f64, b: f64, coefficient: f64) -> f64 {
+        const STEPS: usize = 2000;
+        let end = coefficient.asin();
+        let at = |i: usize| {
+            let (s, c) = (end * i as f64 / STEPS as f64).sin_cos();
+            (-0.5 * (a * a - 2.0 * s * a * b + b * b) / (c * c)).exp()
+        };
+        let weight = |i: usize| if i == 0 || i == STEPS { 1.0 } else { (2 + 2 * (i % 2)) as f64 };
+        let sum: f64 = (0..=STEPS).map(|i| weight(i) * at(i)).sum();
+        let independent = crate::normal::above(a) * crate::normal::above(b);
+        independent + sum * end / (3 * STEPS) as f64 / std::f64::consts::TAU
+    }
+
+    /// A random law of single values: few or many, rare or frequent.
+    fn stepped(rng: &mut ChaCha8Rng, most: usize) -> ScalarLaw {
+        if rng.random::<f64>() < 0.4 {
+            return ScalarLaw::bernoulli(10_f64.powf(rng.random_range(-3.0..-0.01))).unwrap();
+        }
+        let count = rng.random_range(1..most);
+        let values: Vec<f64> = (0..count).map(|_| rng.random_range(-1.0_f64..3.0)).collect();
+        ScalarLaw::samples(&values.iter().map(|x| (4.0 * x).round()).collect::<Vec<_>>()).unwrap()
+    }
+
+    /// Σ P(x₁ > u, x₂ > v) over the steps of both, and as much for the means: exact but for rounding.
+    fn exact_covariance(laws: [&ScalarLaw; 2], coefficient: f64) -> f64 {
+        let [first, second] = laws.map(|law| {
+            let atoms = law.atoms().unwrap();
+            let mut above = 1.0;
+            let step = |pair: &[(f64, f64)]| {
+                above -= pair[0].1;
+                (-crate::normal::score(above), pair[1].0 - pair[0].0, above)
+            };
+            atoms.windows(2).map(step).collect::<Vec<_>>()
+        });
+        let each = first.iter().flat_map(|a| second.iter().map(move |b| (a, b)));
+        each.map(|((a, high, p), (b, wide, q))| {
+            (both_above(*a, *b, coefficient) - p * q) * high * wide
+        })
+        .sum()
+    }
+
+    /// Laws of single values: alone exact, in pairs against the integral of Plackett, and the same of pairs among three, with coefficients up to
+    /// the ends.
+    #[test]
+    fn laws_of_single_values_are_exact() {
+        let rng = &mut ChaCha8Rng::seed_from_u64(7);
+        let one = Monomial::default();
+        for case in 0..60 {
+            let laws = [(); 3].map(|()| stepped(rng, 12));
+            // Of a law with its own mean as a fourth: normal, and the last in the order.
+            let normal = ScalarLaw::normal(1.0, 0.1).unwrap();
+            let signs: [f64; 3] = [(); 3].map(|()| rng.random_range(-1.0..1.0));
+            let tied = |i: usize, j: usize| (i, j, 0.995 * signs[i] * signs[j]);
+            let correlation = Correlation::new(&[tied(0, 1), tied(0, 2), tied(1, 2)]).unwrap();
+            let [a, b, c] = &laws;
+            let scores = Scores {
+                laws: vec![a, b, c, &normal],
+                correlation: &correlation,
+                factor: |x| x,
+                known: RefCell::default(),
+            };
+            let x = [0, 1, 2].map(|s| one.times(s, 1));
+            for (law, x) in laws.iter().zip(&x) {
+                let (mean, variance) = scores.covariance(x, x);
+                let size = law.reach(1.0).max(1.0);
+                assert!((mean - law.mean()).abs() < 1e-13 * size, "{case} {law:?}: {mean}");
+                assert!(
+                    (variance.max(0.0).sqrt() - law.deviation()).abs() < 1e-7 * size,
+                    "{case} {law:?}"
+                );
+            }
+            for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+                let exact = exact_covariance([&laws[i], &laws[j]], tied(i, j).2);
+                let (_, found) = scores.covariance(&x[i], &x[j]);
+                let size = laws[i].deviation() * laws[j].deviation();
+                assert!(
+                    (found - exact).abs() <= 1e-5 * size + 1e-14,
+                    "{case} {i} {j}: {found} {exact} {size}"
+                );
+                // All three at once: E x_i x_j is the first.
+                let k = 3 - i - j;
+                let (product, _) = scores.covariance(&x[i].times(j, 1), &x[k]);
+                let gap = product - exact - laws[i].mean() * laws[j].mean();
+                assert!(gap.abs() <= 1e-3 * (size + product.abs()), "{case} {i} {j}: {gap} {size}");
+            }
+        }
+    }
+
+    /// Many samples that go with a normal scalar and a lognormal one: as if they were drawn.
+    #[test]
+    fn many_samples_go_with_other_scalars() {
+        let rng = &mut ChaCha8Rng::seed_from_u64(8);
+        let values: Vec<f64> = (0..3000).map(|_| rng.random::<f64>().powi(3)).collect();
+        let laws = [
+            ScalarLaw::lognormal(2.0, 0.7).unwrap(),
+            ScalarLaw::samples(&values).unwrap(),
+            ScalarLaw::normal(1.0, 0.3).unwrap(),
+            ScalarLaw::samples(&values[..40]).unwrap(),
+        ];
+        let correlation =
+            Correlation::new(&[(0, 1, 0.6), (1, 2, -0.5), (0, 2, 0.1), (1, 3, 0.5)]).unwrap();
+        let scores = Scores {
+            laws: laws.iter().collect(),
+            correlation: &correlation,
+            factor: |x| x,
+            known: RefCell::default(),
+        };
+        let one = Monomial::default();
+        let x = [0, 1, 2, 3].map(|s| one.times(s, 1));
+        let pairs = [
+            (x[0], x[1]),
+            (x[0].times(1, 1), x[2]),
+            (x[1].times(3, 1), x[0]),
+            (x[1], x[1].times(3, 2)),
+        ];
+        let count = 400_000;
+        let draws: Vec<[f64; 4]> = (0..count)
+            .map(|_| {
+                let mut z = [(); 4].map(|()| StandardNormal.sample(rng));
+                correlation.mix(&mut z);
+                std::array::from_fn(|i| laws[i].at_score(z[i]))
+            })
+            .collect();
+        for (f, g) in pairs {
+            let at = |m: &Monomial, x: &[f64; 4]| {
+                (0..4).map(|i| x[i].powi(m.powers[i])).product::<f64>()
+            };
+            let mean = |of: &dyn Fn(&[f64; 4]) -> f64| {
+                draws.iter().map(of).sum::<f64>() / f64::from(count)
+            };
+            let (first, second) = (mean(&|x| at(&f, x)), mean(&|x| at(&g, x)));
+            let product = |x: &[f64; 4]| (at(&f, x) - first) * (at(&g, x) - second);
+            let drawn = mean(&product);
+            let error = (mean(&|x| (product(x) - drawn).powi(2)) / f64::from(count)).sqrt();
+            let (_, found) = scores.covariance(&f, &g);
+            assert!((found - drawn).abs() < 4.0 * error, "{f:?} {g:?}: {found} {drawn} {error}");
         }
     }
 }

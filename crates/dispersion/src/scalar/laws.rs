@@ -58,6 +58,11 @@ pub(super) trait Law: Sized {
     /// What no draw exceeds in magnitude, `far` standard deviations of what is normal in it taken for all.
     fn reach(&self, far: f64) -> f64;
 
+    /// All values in rising order with their probabilities, of a law of single values.
+    fn atoms(&self) -> Option<Vec<(f64, f64)>> {
+        None
+    }
+
     /// A draw in the quickest way.
     #[inline]
     fn draw<R: Rng + ?Sized>(&self, rng: &mut R) -> f64 {
@@ -1002,6 +1007,12 @@ impl Law for Samples {
         self.values.iter().fold(0.0, |most, x| most.max(x.abs()))
     }
 
+    fn atoms(&self) -> Option<Vec<(f64, f64)>> {
+        let count = self.values.len() as f64;
+        let equal = self.values.chunk_by(|a, b| a == b);
+        Some(equal.map(|values| (values[0], values.len() as f64 / count)).collect())
+    }
+
     #[cfg(test)]
     fn examples() -> Vec<(ScalarLaw, [f64; 4])> {
         vec![(
@@ -1078,6 +1089,10 @@ impl Law for Bernoulli {
 
     fn reach(&self, _: f64) -> f64 {
         1.0
+    }
+
+    fn atoms(&self) -> Option<Vec<(f64, f64)>> {
+        Some(vec![(0.0, 1.0 - self.probability), (1.0, self.probability)])
     }
 
     #[cfg(test)]

@@ -181,33 +181,21 @@ impl ScoreLaw {
         law
     }
 
-    /// A share of the own law, and what several laws have besides in equal shares; for each part the law that it is of.
-    pub(super) fn together(laws: &[Self], own: f64) -> (Self, Vec<Option<usize>>) {
-        let mut of_part = vec![None];
-        let mut others = Vec::new();
-        for (i, law) in laws.iter().enumerate() {
+    /// A share of the own law, and what several laws have besides, with shares among themselves.
+    pub(super) fn together<'a>(laws: impl Iterator<Item = (f64, &'a Self)>, own: f64) -> Self {
+        let (mut scores, mut others) = (0, Vec::new());
+        for (share, law) in laws {
+            scores = law.scores;
             let rest: f64 = law.parts[1..].iter().map(|part| part.share).sum();
-            for part in &law.parts[1..] {
-                others.push((part.share / rest, part.singles.clone()));
-                of_part.push(Some(i));
-            }
+            let of = |part: &Part| (share * part.share / rest, part.singles.clone());
+            others.extend(law.parts[1..].iter().map(of));
         }
-        let scores = laws.first().map_or(0, |law| law.scores);
-        (Self::mixed(scores, own, others), of_part)
+        Self::mixed(scores, own, others)
     }
 
     /// What it has besides the own law: shares, and the law of each score.
     pub(super) fn others(&self) -> Vec<(f64, Vec<Single>)> {
         self.parts[1..].iter().map(|part| (part.share, part.singles.clone())).collect()
-    }
-
-    /// The law of those draws that are of some parts.
-    pub(super) fn of_parts(&self, wanted: impl Fn(usize) -> bool) -> Self {
-        let parts = self.parts.iter().enumerate().filter(|(i, _)| wanted(*i));
-        let mut parts: Vec<Part> = parts.map(|(_, part)| part.clone()).collect();
-        let all: f64 = parts.iter().map(|part| part.share).sum();
-        parts.iter_mut().for_each(|part| part.share /= all);
-        Self { scores: self.scores, parts }
     }
 
     /// Whether it is nothing but the own law.

@@ -1,28 +1,19 @@
-//! A search for the law of scores under which an event is least rare: the cross-entropy method.
+//! A search for the laws of scores under which an event is least rare: one way after the other.
 
 use super::{
-    fit::{self, Elite},
-    score_law::{OWN, ScoreLaw, Single, Tail},
+    score_law::ScoreLaw,
+    way::{Ended, WaySearch},
 };
-use crate::{StatisticsError, error::share};
+use crate::StatisticsError;
 
-/// One run in so many leads on.
-const PART: usize = 10;
-/// So many levels in a row that are no higher end a search.
-const MOST_STALLED: usize = 3;
-/// The probability below which a search gives up, unless told otherwise.
-const LEAST: f64 = 1e-9;
-/// Most scores, runs of a level, and scores of all runs of a level.
-const MOST: usize = 100_000_000;
-/// So many events does a run have at the start, if it may have some, and none of them more often than this.
-const STARTING: f64 = 0.5;
-const OFTEN_AT_FIRST: f64 = 0.1;
-/// So many runs that are the event are enough to fit a law to.
-const ENOUGH: usize = 30;
-/// So few lead on if the level would fall otherwise.
-const FEWEST_ELITES: usize = 10;
-/// Fewest runs of a level.
-const FEWEST: usize = 100;
+/// So many searches know nothing of each other.
+const INDEPENDENT: usize = 2;
+/// Most searches.
+const MOST_SEARCHES: usize = 20;
+/// So many searches have to say that nothing more is left where several ways were found.
+const AGREEING: usize = 2;
+/// After so many searches in a row that come to no answer it gives up.
+const MOST_LOST: usize = 3;
 
 /// A search for the law of scores under which an event is least rare, by the cross-entropy method (Rubinstein & Kroese 2004,
 /// doi:10.1007/978-1-4757-4321-0), in steps: it asks for runs, which may be done in any order, and is told their outcomes.
@@ -35,23 +26,21 @@ const FEWEST: usize = 100;
 /// What is fitted is one normal law or a mixture of up to twelve, with independent scores: several, where the likelihood says that there
 /// are several ways, as to both limits of an absolute value. Standard deviations are kept between 0.3 and 3, and stay 1 unless they are surely
 /// another; means are shrunk by what they owe to chance (James & Stein 1961).
+///
+/// **Two such searches know nothing of each other. Then it starts again for what neither has found.** A run counts there with the probability that it would be from the own law if it were drawn
+/// from the mixture of a tenth of the own law and of all that was found: runs near a known way hardly count, those of another way do. It ends
+/// when so little of the probability is left that it does not matter, 2 % of what was found; where several ways were found, two searches
+/// have to say so. A search that comes to no answer is done again, at most twice.
 #[derive(Clone, Debug, getset::CopyGetters, getset::Getters)]
 pub struct ScoreSearch {
-    per_level: usize,
-    least: f64,
-    /// The law of each score from which the search starts.
-    start: Vec<Single>,
-    /// The law that their scores are to be drawn from; in the end, the law that was found.
+    /// As each search begins.
+    plan: WaySearch,
+    done: Vec<WaySearch>,
+    /// The one that is on the way.
+    now: Option<WaySearch>,
+    /// The law that scores are to be drawn from; in the end, the mixture of a tenth of the own law and of all that was found.
     #[getset(get = "pub")]
     law: ScoreLaw,
-    stage: Stage,
-    /// The largest excess that a tenth of the runs of some level had, 0 at most; minus infinity before the first.
-    #[getset(get_copy = "pub")]
-    level: f64,
-    /// Number of levels that were done.
-    #[getset(get_copy = "pub")]
-    levels: usize,
-    stalled: usize,
     /// Number of runs that were done.
     #[getset(get_copy = "pub")]
     evaluations: u64,
@@ -60,21 +49,9 @@ pub struct ScoreSearch {
     without_excess: u64,
 }
 
-/// Where a search stands.
-#[derive(Clone, Debug, PartialEq)]
-enum Stage {
-    /// On the way.
-    Rising,
-    /// The event is not rare any more; the law is fitted to it.
-    Fitting,
-    Done {
-        reached: bool,
-    },
-}
-
 impl ScoreSearch {
     /// It gives up after so many levels.
-    pub const MOST_LEVELS: usize = 25;
+    pub const MOST_LEVELS: usize = MOST_SEARCHES * WaySearch::MOST_LEVELS;
 
     /// With so many scores, and runs of a level.
     ///
@@ -82,21 +59,18 @@ impl ScoreSearch {
     ///
     /// [`StatisticsError::SearchPlan`] unless there are 1 score and 100 runs or more, and 10⁸ scores of a level at most.
     pub fn new(scores: usize, per_level: usize) -> Result<Self, StatisticsError> {
-        if !(scores >= 1 && per_level >= FEWEST && scores.saturating_mul(per_level) <= MOST) {
-            return Err(StatisticsError::SearchPlan { scores, per_level });
-        }
-        Ok(Self {
-            per_level,
-            least: LEAST,
-            start: vec![Single::OWN; scores],
-            law: ScoreLaw::own(scores),
-            stage: Stage::Rising,
-            level: f64::NEG_INFINITY,
-            levels: 0,
-            stalled: 0,
+        Ok(Self::of(WaySearch::new(scores, per_level)?))
+    }
+
+    fn of(plan: WaySearch) -> Self {
+        Self {
+            law: plan.law.clone(),
+            now: Some(plan.clone()),
+            plan,
+            done: Vec::new(),
             evaluations: 0,
             without_excess: 0,
-        })
+        }
     }
 
     /// Gives up below this probability; below 1e-9 else.
@@ -105,7 +79,7 @@ impl ScoreSearch {
     ///
     /// [`StatisticsError::Share`] unless it lies between 1e-9 and 1 − 1e-9.
     pub fn with_least(self, least: f64) -> Result<Self, StatisticsError> {
-        Ok(Self { least: share(least)?, ..self })
+        Ok(Self::of(self.plan.with_least(least)?))
     }
 
     /// Of scores in these places is known that they decide events: that of a probability happens where the score is in its upper tail of this
@@ -114,29 +88,13 @@ impl ScoreSearch {
     /// # Errors
     ///
     /// [`StatisticsError::Probability`] unless it lies strictly between 0 and 1, [`StatisticsError::Columns`] if there is no such place.
-    pub fn with_events(mut self, events: &[(usize, f64)]) -> Result<Self, StatisticsError> {
-        for &(place, value) in events {
-            if !(value > 0.0 && value < 1.0) {
-                return Err(StatisticsError::Probability { value });
-            }
-            let scores = self.start.len();
-            let columns =
-                StatisticsError::Columns { first: scores, second: place.saturating_add(1) };
-            let start = self.start.get_mut(place).ok_or(columns)?;
-            let tail = Tail::new(value);
-            let often = (STARTING / events.len() as f64).min(OFTEN_AT_FIRST);
-            *start = Single::Tail(Tail { chance: value.max(often), ..tail });
-        }
-        if !events.is_empty() {
-            let others = vec![(1.0, self.start.clone())];
-            self.law = ScoreLaw::mixed(self.start.len(), OWN, others);
-        }
-        Ok(self)
+    pub fn with_events(self, events: &[(usize, f64)]) -> Result<Self, StatisticsError> {
+        Ok(Self::of(self.plan.with_events(events)?))
     }
 
     /// How many runs are wanted next; none if it is done.
     pub fn asks(&self) -> usize {
-        if self.is_done() { 0 } else { self.per_level }
+        self.now.as_ref().map_or(0, WaySearch::asks)
     }
 
     /// Takes the runs that were asked for: the scores of each, and how far it is beyond the limit. The event is an excess of 0 or
@@ -147,88 +105,68 @@ impl ScoreSearch {
     /// [`StatisticsError::Columns`] if they are not as many as were asked for, or have not as many scores as the law,
     /// [`StatisticsError::LogWeight`] if a score is not finite.
     pub fn tell(&mut self, runs: &[(Vec<f64>, f64)]) -> Result<(), StatisticsError> {
-        crate::rank_correlation::same_length(self.asks(), runs.len())?;
-        let mut weights = Vec::with_capacity(runs.len());
-        for (scores, _) in runs {
-            crate::rank_correlation::same_length(self.law.scores(), scores.len())?;
-            let value = self.law.log_weight(scores);
-            if !value.is_finite() {
-                return Err(StatisticsError::LogWeight { value, most: -OWN.ln() });
-            }
-            weights.push(libm::exp(value));
-        }
-        if self.is_done() {
-            return Ok(());
-        }
-        self.levels += 1;
+        let Some(now) = &mut self.now else {
+            return crate::rank_correlation::same_length(0, runs.len());
+        };
+        now.tell(runs)?;
         self.evaluations += runs.len() as u64;
         self.without_excess += runs.iter().filter(|run| run.1.is_nan()).count() as u64;
-        let Some(level) = self.next_level(runs) else {
-            self.stalled += 1;
-            if self.stalled >= MOST_STALLED {
-                self.stage = Stage::Done { reached: false };
+        if now.is_done() {
+            self.done.extend(self.now.take());
+            let next = self.plan.clone();
+            if self.done.len() < INDEPENDENT {
+                self.now = Some(next);
+            } else if self.goes_on() {
+                self.now = Some(next.beyond(&self.done));
             }
-            return Ok(());
-        };
-        let elites: Vec<Elite<'_>> = runs
-            .iter()
-            .zip(&weights)
-            .filter(|((_, excess), _)| *excess >= level)
-            .map(|((scores, _), weight)| Elite { scores, weight: *weight })
-            .collect();
-        let probability =
-            elites.iter().map(|elite| elite.weight).sum::<f64>() / self.per_level as f64;
-        let higher = level > self.level;
-        self.stalled = if higher { 0 } else { self.stalled + 1 };
-        self.stage = match self.stage {
-            Stage::Fitting => Stage::Done { reached: true },
-            Stage::Rising if level >= 0.0 => Stage::Fitting,
-            Stage::Rising
-                if self.stalled >= MOST_STALLED
-                    || self.levels >= Self::MOST_LEVELS
-                    || probability < self.least =>
-            {
-                Stage::Done { reached: false }
-            }
-            Stage::Rising => Stage::Rising,
-            Stage::Done { reached } => Stage::Done { reached },
-        };
-        self.level = self.level.max(level);
-        if let Some(others) =
-            fit::fit(&elites, &self.start, &self.law.others(), self.stage == Stage::Rising)
-        {
-            self.law = ScoreLaw::mixed(self.law.scores(), OWN, others);
         }
+        self.law = self.now.as_ref().map_or_else(|| self.found(), |now| now.law.clone());
         Ok(())
     }
 
     /// Whether nothing more is asked for.
     pub fn is_done(&self) -> bool {
-        matches!(self.stage, Stage::Done { .. })
+        self.now.is_none()
     }
 
     /// Whether it came to the event.
     pub fn reached(&self) -> bool {
-        matches!(self.stage, Stage::Done { reached: true })
+        self.done.iter().any(WaySearch::reached)
     }
 
-    /// The excess that a tenth of the runs have, or the least that not all have; 0 at most, and none if all runs are alike. No less
-    /// than before, and the event itself, as soon as enough runs have it.
-    fn next_level(&self, runs: &[(Vec<f64>, f64)]) -> Option<f64> {
-        let mut excesses: Vec<f64> = runs.iter().map(|run| run.1.max(f64::NEG_INFINITY)).collect();
-        excesses.sort_unstable_by(|a, b| b.total_cmp(a));
-        let enough = *excesses.get(ENOUGH - 1)?;
-        if enough >= 0.0 {
-            return Some(0.0);
+    /// How many searches did not come to an event of which nothing was known.
+    pub(super) fn not_reached(&self) -> usize {
+        let lost = |way: &&WaySearch| way.ended() == Some(Ended::NotReached) && !way.is_further();
+        self.done.iter().filter(lost).count()
+    }
+
+    /// How many searches there were, if they left open whether there is another way to the event.
+    pub(super) fn unsettled(&self) -> Option<usize> {
+        (self.reached() && !self.is_settled()).then_some(self.done.len())
+    }
+
+    /// Whether nothing that matters is left of the event: the last searches say so that came to an answer.
+    fn is_settled(&self) -> bool {
+        let several = self.done.iter().any(|way| way.reached() && way.is_further());
+        let after = self.done.iter().rev().take_while(|way| !way.reached());
+        let nothing = after.filter(|way| way.ended() == Some(Ended::NothingMore)).count();
+        nothing >= if several { AGREEING } else { 1 }
+    }
+
+    /// Whether another search is worth its runs.
+    fn goes_on(&self) -> bool {
+        let lost = |way: &&WaySearch| way.ended() == Some(Ended::NotReached);
+        let lost = self.done.iter().rev().take_while(|way| !way.reached()).filter(lost).count();
+        let most = if self.reached() { MOST_LOST } else { INDEPENDENT };
+        self.done.len() < MOST_SEARCHES && lost < most && !self.is_settled()
+    }
+
+    /// What is drawn from in the end: what was found, or what led nearest if nothing was.
+    fn found(&self) -> ScoreLaw {
+        let mut ways: Vec<&WaySearch> = self.done.iter().filter(|way| way.reached()).collect();
+        if ways.is_empty() {
+            ways.extend(&self.done);
         }
-        let (level, least) = (excesses[excesses.len() / PART - 1], *excesses.last()?);
-        if level > self.level && level > least {
-            return Some(level);
-        }
-        // Where few runs can come nearer, because others draw what no score leads to, these few lead on.
-        if enough > least {
-            return Some(enough.max(self.level.min(excesses[FEWEST_ELITES - 1])));
-        }
-        excesses.into_iter().rev().find(|excess| *excess > least).map(|excess| excess.min(0.0))
+        WaySearch::together(&ways)
     }
 }

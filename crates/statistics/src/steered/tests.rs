@@ -17,11 +17,10 @@ struct Plan {
     scores: usize,
     per_level: usize,
     sample: usize,
-    searches: usize,
     events: &'static [(usize, f64)],
 }
 
-const PLAN: Plan = Plan { scores: 10, per_level: 1000, sample: 5000, searches: 2, events: &[] };
+const PLAN: Plan = Plan { scores: 10, per_level: 1000, sample: 5000, events: &[] };
 
 fn scores(rng: &mut ChaCha8Rng, law: &ScoreLaw) -> (f64, Vec<f64>) {
     let mut scores: Vec<f64> =
@@ -31,33 +30,29 @@ fn scores(rng: &mut ChaCha8Rng, law: &ScoreLaw) -> (f64, Vec<f64>) {
     (choice, scores)
 }
 
-fn searched(plan: Plan, rng: &mut ChaCha8Rng, excess: Excess<'_>) -> Vec<ScoreSearch> {
-    let mut searches = Vec::new();
-    for _ in 0..plan.searches {
-        let mut search = ScoreSearch::new(plan.scores, plan.per_level).unwrap();
-        search = search.with_events(plan.events).unwrap();
-        while !search.is_done() {
-            let runs: Vec<(Vec<f64>, f64)> = (0..search.asks())
-                .map(|_| {
-                    let (_, scores) = scores(rng, search.law());
-                    let y = excess(&scores, rng);
-                    (scores, y)
-                })
-                .collect();
-            search.tell(&runs).unwrap();
-        }
-        searches.push(search);
+fn searched(plan: Plan, rng: &mut ChaCha8Rng, excess: Excess<'_>) -> ScoreSearch {
+    let search = ScoreSearch::new(plan.scores, plan.per_level).unwrap();
+    let mut search = search.with_events(plan.events).unwrap();
+    while !search.is_done() {
+        let runs: Vec<(Vec<f64>, f64)> = (0..search.asks())
+            .map(|_| {
+                let (_, scores) = scores(rng, search.law());
+                let y = excess(&scores, rng);
+                (scores, y)
+            })
+            .collect();
+        search.tell(&runs).unwrap();
     }
-    searches
+    search
 }
 
 fn estimate(plan: Plan, seed: u64, excess: Excess<'_>) -> SteeredEstimate {
     let rng = &mut ChaCha8Rng::seed_from_u64(seed);
     let mut sample = SteeredSampling::new(&searched(plan, rng, excess)).unwrap();
     for _ in 0..plan.sample {
-        let (choice, scores) = scores(rng, sample.law());
+        let (_, scores) = scores(rng, sample.law());
         let y = excess(&scores, rng);
-        sample.push(choice, &scores, y).unwrap();
+        sample.push(&scores, y).unwrap();
     }
     sample.finish(Confidence::default()).unwrap()
 }
@@ -197,7 +192,7 @@ fn wrong_weights_are_found_out() {
         &|law, z| law.log_weight(z) - wider(z, 1.1),
         &|law, z| law.log_weight(z) + wider(z, 1.1),
         &|law, z| {
-            let parts = law.of_parts(|part| part > 0);
+            let parts = ScoreLaw::mixed(law.scores(), 0.0, law.others());
             parts.log_weight(z) + 0.1_f64.ln()
         },
     ];
@@ -238,25 +233,9 @@ fn what_is_not_reached_is_told() {
     }
 }
 
-/// An event that one of two searches cannot see tells that they differ; one that needs a rare hidden number has few effective runs.
+/// An event that needs a rare hidden number has few effective runs.
 #[test]
 fn what_is_hardly_seen_is_warned_of() {
-    let limit = 5.0;
-    let rng = &mut ChaCha8Rng::seed_from_u64(4);
-    let plan = Plan { searches: 1, ..PLAN };
-    let mut searches = searched(plan, rng, &|z, _| sum(z) - limit);
-    searches.extend(searched(plan, rng, &|z, _| -limit - sum(z)));
-    let mut sample = SteeredSampling::new(&searches).unwrap();
-    for _ in 0..PLAN.sample {
-        let (choice, scores) = scores(rng, sample.law());
-        let y = if sum(&scores) > 0.0 { sum(&scores) - limit } else { -limit - 0.1 - sum(&scores) };
-        sample.push(choice, &scores, y).unwrap();
-    }
-    let found = sample.finish(Confidence::default()).unwrap();
-    let truth = tail::normal(limit) + tail::normal(limit + 0.1);
-    assert!(found.interval().contains(truth), "{found:?}");
-    let warned = matches!(found.warnings(), [SteeredWarning::SearchesDiffer { one, other }] if *one < 0.7 * other);
-    assert!(warned, "{found:?}");
     for seed in 0..20 {
         let found = estimate(PLAN, seed, &|z, rng| {
             if rng.random::<f64>() < 0.001 { sum(z) - 3.0 } else { (sum(z) - 9.0).min(-1.0) }
@@ -391,10 +370,8 @@ fn what_cannot_be_is_refused() {
         let refused = search.clone().with_events(&[(place, 0.5)]);
         assert!(matches!(refused, Err(StatisticsError::Columns { .. })), "{place}");
     }
-    assert_eq!(search.level(), f64::NEG_INFINITY);
     let required = StatisticsError::TooFew { n: 0, required: 100 };
-    assert_eq!(SteeredSampling::new(std::slice::from_ref(&search)).unwrap_err(), required);
-    assert!(matches!(SteeredSampling::new(&[]), Err(StatisticsError::TooFew { .. })));
+    assert_eq!(SteeredSampling::new(&search).unwrap_err(), required);
     let mut told = search.clone();
     let runs = |scores: Vec<f64>, n: usize| vec![(scores, 0.0); n];
     for (scores, n) in [(vec![0.0; 2], 99), (vec![0.0; 3], 100)] {
@@ -405,10 +382,14 @@ fn what_cannot_be_is_refused() {
     }
     let refused = told.tell(&runs(vec![f64::NAN; 2], 100)).unwrap_err();
     assert!(matches!(refused, StatisticsError::Columns { .. }), "nothing is asked for");
-    let mut sample = SteeredSampling::new(&[told]).unwrap();
-    let nan = sample.push(0.5, &[f64::NAN; 2], 1.0).unwrap_err();
+    let mut sample = SteeredSampling::new(&told).unwrap();
+    let mut unfit = search.clone();
+    let refused = unfit.tell(&runs(vec![0.5, f64::NAN], 100)).unwrap_err();
+    assert!(matches!(refused, StatisticsError::LogWeight { .. }));
+    assert_eq!((unfit.evaluations(), unfit.asks()), (0, 100));
+    let nan = sample.push(&[f64::NAN; 2], 1.0).unwrap_err();
     assert!(matches!(nan, StatisticsError::LogWeight { .. }));
-    assert!(matches!(sample.push(0.5, &[0.0], 1.0), Err(StatisticsError::Columns { .. })));
+    assert!(matches!(sample.push(&[0.0], 1.0), Err(StatisticsError::Columns { .. })));
     assert!(sample.finish(Confidence::default()).is_err());
 }
 
@@ -468,32 +449,37 @@ fn both_methods_agree_with_plain_runs() {
     }
 }
 
-/// Any one of many scores can cause the event alone, and two searches find some of these ways: that there are more is told, or the
-/// interval holds all the same. (Of such a mixture of two laws as was fitted once, 20 of these 48 answers were wrong, and not warned of.)
+/// Any one of some scores can cause the event alone: so many of 16 intervals hold the truth, and none is far off. (Of two searches that knew
+/// nothing of each other 20, 8 and 6 of 40 held it.)
 #[test]
-fn ways_that_were_missed_are_warned_of() {
-    let mut unwarned = Vec::new();
-    for (scores, limit) in [(4, 4.2), (6, 4.3), (10, 4.5)] {
+fn ways_are_found_one_after_the_other() {
+    for (scores, active, limit, least) in [(6, 6, 4.3, 14), (10, 10, 4.5, 11), (30, 10, 4.5, 9)] {
         let plan = Plan { scores, sample: 10_000, ..PLAN };
-        let truth = -libm::expm1(scores as f64 * libm::log1p(-tail::normal(limit)));
-        let largest =
-            |z: &[f64], _: &mut ChaCha8Rng| z.iter().copied().fold(f64::MIN, f64::max) - limit;
+        let truth = -libm::expm1(active as f64 * libm::log1p(-tail::normal(limit)));
+        let (mut held, mut runs) = (0, 0);
         for seed in 0..16 {
-            let found = estimate(plan, seed, &largest);
-            if !found.interval().contains(truth) && found.warnings().is_empty() {
-                unwarned.push((scores, seed));
-            }
+            let found = estimate(plan, seed, &|z, _| {
+                z[..active].iter().copied().fold(f64::MIN, f64::max) - limit
+            });
+            held += u32::from(found.interval().contains(truth));
+            runs += found.evaluations() / 16;
+            let is_near = (0.3..2.0).contains(&(found.probability() / truth));
+            assert!(is_near || !found.warnings().is_empty(), "{active} of {scores}: {found:?}");
         }
+        println!("any of {active} of {scores} scores: held {held} of 16, {runs} runs");
+        assert!(held >= least, "{active} of {scores}: {held}");
     }
-    assert!(unwarned.len() <= 6, "{unwarned:?}");
 }
 
-/// With more runs of a level, all of them are found.
+/// More ways than searches find: that is told.
 #[test]
-fn many_ways_are_found_with_many_runs() {
-    let plan = Plan { scores: 6, per_level: 5000, sample: 10_000, ..PLAN };
-    let truth = -libm::expm1(6.0 * libm::log1p(-tail::normal(4.3)));
-    let largest = |z: &[f64], _: &mut ChaCha8Rng| z.iter().copied().fold(f64::MIN, f64::max) - 4.3;
-    let held = (0..8).filter(|seed| estimate(plan, *seed, &largest).interval().contains(truth));
-    assert!(held.count() >= 7);
+fn more_ways_than_are_found_are_warned_of() {
+    let plan = Plan { scores: 60, sample: 1000, ..PLAN };
+    for seed in 0..2 {
+        let found = estimate(plan, seed, &|z, _| z.iter().copied().fold(f64::MIN, f64::max) - 5.0);
+        let is_told = found.warnings().iter().any(
+            |warning| matches!(warning, SteeredWarning::MoreWays { searches } if *searches > 2),
+        );
+        assert!(is_told, "{found:?}");
+    }
 }

@@ -4,13 +4,8 @@ use gyradius_statistics::{
     Confidence, ScoreSearch, StatisticsError, SteeredEstimate, SteeredSampling,
 };
 
-use super::{options::SEARCHES, runs::EventRuns};
-use crate::{
-    ScenarioError, StudyError,
-    groups::Drawing,
-    steering::{Steered, Steering},
-    subject::Subject,
-};
+use super::runs::EventRuns;
+use crate::{ScenarioError, StudyError, groups::Drawing, steering::Steering, subject::Subject};
 
 /// Runs of the sample that are in memory at once.
 const AT_ONCE: u64 = 10_000;
@@ -41,29 +36,23 @@ pub(super) fn find<C: Subject>(
     let search = ScoreSearch::new(steering.scores(), per_level)
         .and_then(|search| search.with_events(runs.groups().events()))
         .map_err(|error| refused("per-level", error))?;
-    let search = search.with_least(least).map_err(|error| refused("least", error))?;
+    let mut search = search.with_least(least).map_err(|error| refused("least", error))?;
     runs.begin()?;
     // Every run has a number of its own, so that what is found and the sample are independent.
     let mut first = 0;
-    let mut searches = vec![search; SEARCHES];
-    for search in &mut searches {
-        while !search.is_done() {
-            let count = search.asks() as u64;
-            let drawing = Drawing::Steered(steering.with(search.law(), first).into());
-            let told = runs.steered(drawing, count)?;
-            let told: Vec<(Vec<f64>, f64)> =
-                told.into_iter().map(|(Steered { scores, .. }, excess)| (scores, excess)).collect();
-            search.tell(&told)?;
-            first += count;
-        }
+    while !search.is_done() {
+        let count = search.asks() as u64;
+        let drawing = Drawing::Steered(steering.with(search.law(), first).into());
+        search.tell(&runs.steered(drawing, count)?)?;
+        first += count;
     }
-    let mut sampling = SteeredSampling::new(&searches)?;
+    let mut sampling = SteeredSampling::new(&search)?;
     let last = first + sample;
     while first < last {
         let count = AT_ONCE.min(last - first);
         let drawing = Drawing::Steered(steering.with(sampling.law(), first).into());
-        for (Steered { choice, scores }, excess) in runs.steered(drawing, count)? {
-            sampling.push(choice, &scores, excess)?;
+        for (scores, excess) in runs.steered(drawing, count)? {
+            sampling.push(&scores, excess)?;
         }
         first += count;
     }

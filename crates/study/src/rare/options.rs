@@ -5,8 +5,6 @@ use std::sync::{Arc, atomic::AtomicBool};
 
 /// Levels of a subset simulation that there may be: one for each digit of the least probability.
 const DIGITS: u64 = 9;
-/// Independent searches of importance sampling.
-pub(super) const SEARCHES: usize = 2;
 
 /// How a rare event is looked for.
 #[derive(Clone, Debug)]
@@ -50,8 +48,7 @@ impl RareOptions {
                 DIGITS.saturating_mul(per_level).saturating_mul((replicas as u64).saturating_add(1))
             }
             RareMethod::Importance { sample } => {
-                let levels = SEARCHES as u64 * ScoreSearch::MOST_LEVELS as u64;
-                levels.saturating_mul(per_level).saturating_add(sample)
+                (ScoreSearch::MOST_LEVELS as u64).saturating_mul(per_level).saturating_add(sample)
             }
         }
     }

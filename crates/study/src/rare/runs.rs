@@ -12,7 +12,6 @@ use crate::{
     ScenarioError, StudyError,
     decisions::known,
     groups::{Drawing, Groups},
-    steering::Steered,
     subject::{Grouped, Subject},
 };
 
@@ -114,12 +113,12 @@ impl<'a, C: Subject> EventRuns<'a, C> {
         Ok(excesses)
     }
 
-    /// The same of runs that are steered, with what each drew.
+    /// The same of runs that are steered, with the scores of each.
     pub(super) fn steered(
         &self,
         drawing: Drawing,
         runs: u64,
-    ) -> Result<Vec<(Steered, f64)>, StudyError> {
+    ) -> Result<Vec<(Vec<f64>, f64)>, StudyError> {
         let simulation = self.scenario.drawing(&self.prepared, self.at, drawing.clone())?;
         let drawn = simulation.steered(runs);
         Ok(drawn.into_iter().zip(self.excesses(drawing, runs)?).collect())

@@ -122,14 +122,12 @@ fn what_is_weighed_is_what_was_drawn() {
     while !search.is_done() {
         let drawing = Drawing::Steered(steering.with(search.law(), first).into());
         let told = runs.steered(drawing, 300).unwrap();
-        for (steered, excess) in &told {
+        for (z, excess) in &told {
             // The first three scores are the mass centre's: the row of the factor of the coefficients 1, 0, 1/2; 0, 1, 1/2; 1/2, 1/2, 1.
-            let z = &steered.scores;
             let value = 0.01 * (0.5 * z[0] + 0.5 * z[1] + 0.5_f64.sqrt() * z[2]);
             assert!((value - 0.05 - excess).abs() < 1e-12, "{value} {excess}");
         }
         first += 300;
-        let told: Vec<_> = told.into_iter().map(|(steered, y)| (steered.scores, y)).collect();
         search.tell(&told).unwrap();
     }
     assert!(search.reached() && !search.law().is_own());

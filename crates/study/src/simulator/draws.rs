@@ -12,7 +12,6 @@ use crate::{
     drawn::{Draws, Taken},
     groups::{BodyLaw, Drawing, Groups},
     scenario::{Joint, Size},
-    steering::Steered,
 };
 
 /// What a model draws of the bodies and the quantities of a simulator: inputs that are sent, or rows of their own.
@@ -72,7 +71,7 @@ impl SimulatorDraws<'_> {
     }
 
     /// The scores of runs that are steered.
-    pub(crate) fn steered(&self, runs: u64) -> Vec<Steered> {
+    pub(crate) fn steered(&self, runs: u64) -> Vec<Vec<f64>> {
         self.draws.steered(self.dispersed, &self.drawing, self.size, runs)
     }
 

@@ -23,7 +23,6 @@ use crate::{
     head::Head,
     regions::{self, RegionSummary},
     report,
-    steering::Steered,
     subject::{Grouped, Subject, Summarized, head_of},
     unusual::DrawnInput,
 };
@@ -130,7 +129,7 @@ impl Grouped for ExternalSimulation<'_, SimulatorDraws<'_>> {
         self.inputs().groups()
     }
 
-    fn steered(&self, runs: u64) -> Vec<Steered> {
+    fn steered(&self, runs: u64) -> Vec<Vec<f64>> {
         self.inputs().steered(runs)
     }
 
