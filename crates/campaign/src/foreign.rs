@@ -305,7 +305,13 @@ fn places<'a>(
             (Some((place, _)), None) => Ok(place),
             (Some(_), Some(_)) => Err(format!("two columns are called {name:?}")),
             (None, _) => {
-                Err(format!("it has no column {name:?}; its columns are {}", there.join(", ")))
+                let mut problem =
+                    format!("it has no column {name:?}; its columns are {}", there.join(", "));
+                if there.iter().all(|name| name.parse::<f64>().is_ok()) {
+                    problem += ", which are numbers: names must stand in the first line that does not begin with #, as np.savetxt writes \
+                                them with comments=''";
+                }
+                Err(problem)
             }
         }
     };

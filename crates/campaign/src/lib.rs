@@ -57,11 +57,11 @@
 //! ```
 
 mod again;
-mod blank_lines;
 mod campaign;
 mod cell;
 mod chacha8;
 mod column;
+mod csv_lines;
 mod designs;
 mod external;
 mod failure;

@@ -160,6 +160,42 @@ proptest! {
     }
 }
 
+/// Parquet has no durations: pandas writes them as whole numbers, and says so beside the table.
+#[test]
+fn durations_are_no_numbers() {
+    use parquet::{
+        basic::Type as Physical,
+        data_type::Int64Type,
+        file::{metadata::KeyValue, properties::WriterProperties, writer::SerializedFileWriter},
+        schema::types::Type,
+    };
+    let column = |name: &str| Type::primitive_type_builder(name, Physical::INT64).build().unwrap();
+    let fields = ["late", "n"].map(|name| column(name).into()).to_vec();
+    let schema = Type::group_type_builder("it").with_fields(fields).build().unwrap();
+    let told = r#"{"columns": [{"name": "late", "numpy_type": "timedelta64[ns]"}, {"name": "n", "numpy_type": "int64"}]}"#;
+    let note = KeyValue::new("pandas".to_owned(), told.to_owned());
+    let properties = WriterProperties::builder().set_key_value_metadata(Some(vec![note])).build();
+    let scratch = scratch();
+    let path = scratch.path().join("it.parquet");
+    let file = fs::File::create(&path).unwrap();
+    let mut writer = SerializedFileWriter::new(file, schema.into(), properties.into()).unwrap();
+    let mut group = writer.next_row_group().unwrap();
+    while let Some(mut column) = group.next_column().unwrap() {
+        column.typed::<Int64Type>().write_batch(&[1; 40], Some(&[1; 40]), None).unwrap();
+        column.close().unwrap();
+    }
+    group.close().unwrap();
+    writer.close().unwrap();
+    let table = ForeignTable::open(&path).unwrap();
+    let judged = |name: &str| {
+        let requirement: Requirement = format!("{name} <= 1 in 60 % at 80 %").parse().unwrap();
+        Judgement::of_table(&[requirement], &table)
+    };
+    assert_eq!(judged("n").unwrap()[0].failures(), 0);
+    let refused = judged("late").unwrap_err().to_string();
+    assert!(refused.contains("\"late\" is of durations (timedelta64[ns])"), "{refused}");
+}
+
 /// A folder is all its Parquet files, however these end; one with more of them below is refused, for they would not be read.
 #[test]
 fn a_folder_is_all_its_files() {

@@ -130,13 +130,15 @@ pub(crate) fn is_comment(line: &str) -> bool {
     (line.starts_with('#') && !is_numbered(line)) || line.trim().is_empty() || states_products(line)
 }
 
-/// Whether a line that begins with # is a row: the heading of a column of numbers, `#,name,mass`, or a name, `#2 thruster,…`.
+/// Whether a line that begins with # is a row: the heading of a column of numbers, `#,name,mass`, or a number or a name
+/// with one, `#2,…` or `#2 thruster,…`.
 fn is_numbered(line: &str) -> bool {
     let is_separator = |c: char| [',', ';', '\t'].contains(&c);
     let Some((first, rest)) = line[1..].split_once(is_separator) else { return false };
     let digits = first.len() - first.trim_start_matches(|c: char| c.is_ascii_digit()).len();
     first.is_empty() && rest.starts_with(char::is_alphabetic)
-        || digits > 0 && first[digits..].contains(char::is_alphabetic)
+        || digits > 0
+            && (first[digits..].trim().is_empty() || first[digits..].contains(char::is_alphabetic))
 }
 
 /// What there is most of in a header; a comma where nothing is.

@@ -28,12 +28,12 @@ impl Verdict {
         }
     }
 
-    /// All hold: holds. None of those that can be told: does not. Otherwise in part.
+    /// All hold: holds. Some do: in part. None does: it does not hold. Otherwise nothing can be told.
     pub(crate) fn of_all(parts: &[Self]) -> Self {
         let any = |verdict| parts.contains(&verdict);
         if any(Self::Holds) || any(Self::HoldsInPart) {
             if parts.iter().all(|p| *p == Self::Holds) { Self::Holds } else { Self::HoldsInPart }
-        } else if any(Self::DoesNotHold) {
+        } else if any(Self::DoesNotHold) && !any(Self::NotTested) {
             Self::DoesNotHold
         } else {
             Self::NotTested

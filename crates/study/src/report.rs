@@ -13,7 +13,7 @@ use crate::{
     alerts,
     body::{Body, Entry},
     claim::Verdict,
-    claims::{CONSIDERABLE, IDENTICAL, LESS, ONE_SIDED},
+    claims::{CONSIDERABLE, IDENTICAL, LESS, ONE_SIDED, RARE},
     configuration::sketch,
     decisions, drivers, far_lobe, faults, figures_of_study,
     head::Head,
@@ -263,14 +263,16 @@ fn claims(summary: &Summary) -> Section {
     let reading = format!(
         "Peck (2003) claims the following of physically realizable models and of independent Gaussian entries. \
          “Considerably more” is taken as a deviation larger by at least {:.0} %, “less” as a mean lower by at \
-         least {} %, “the same” as within {} %, “one-sided” as a skewness beyond {}. A claim holds in a \
+         least {} %, “the same” as within {} %, “one-sided” as a skewness beyond {}. That something happens is refuted if it surely happens in \
+         less than {} % of the runs. A claim holds in a \
          comparison if the whole interval is on its side of that line, and does not if the whole interval is on \
          the other; else these runs cannot tell. What holds in one comparison and not, or not surely, in another \
          holds in part.",
         100.0 * (CONSIDERABLE - 1.0),
         100.0 * LESS,
         100.0 * IDENTICAL,
-        significant(ONE_SIDED, 1)
+        significant(ONE_SIDED, 1),
+        100.0 * RARE
     );
     let table = PageTable::of(&summary.claims)
         .words("claim", |c| c.claim.as_str())

@@ -4,7 +4,7 @@ use std::{fs::File, io::Read, path::Path, sync::Arc};
 
 use super::{Columns, ForeignError, places, status};
 use crate::{
-    blank_lines::BlankLines,
+    csv_lines::{CsvLines, ERRORS},
     failure::{Failure, OK},
 };
 
@@ -54,9 +54,7 @@ pub(super) fn reader<'a>(
         CsvText::InFile => Box::new(File::open(path).map_err(|error| broken(path, &error.into()))?),
         CsvText::Held(bytes) => Box::new(bytes.as_slice()),
     };
-    // A blank line is skipped, and of one column it is an empty cell.
-    let text: Box<dyn Read + 'a> =
-        if columns == 1 { Box::new(BlankLines::new(text)) } else { text };
+    let text = CsvLines::new(text, separator, columns == 1);
     let text: Box<dyn Read + 'a> = Box::new(text.chain(BEHIND));
     let mut builder = csv::ReaderBuilder::new();
     builder.delimiter(separator).comment(Some(b'#')).trim(csv::Trim::All);
@@ -145,6 +143,6 @@ pub(super) fn number(cell: &str) -> Option<Option<f64>> {
     match small.as_str() {
         "true" => Some(Some(1.0)),
         "false" => Some(Some(0.0)),
-        other => MISSING.contains(&other).then_some(None),
+        other => (MISSING.contains(&other) || ERRORS.contains(&other)).then_some(None),
     }
 }

@@ -7,7 +7,7 @@ use parquet::{
     errors::ParquetError,
     file::reader::{FileReader, SerializedFileReader},
 };
-use std::{fs::File, path::Path};
+use std::{collections::HashMap, fs::File, path::Path};
 
 use super::{Columns, ForeignError, places, status};
 use crate::{
@@ -42,6 +42,7 @@ pub(super) fn scan_parquet(
     let there = names(&reader);
     let places = places(path, &there, measured.iter().chain(written))?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
+    let durations = durations(&reader);
     for place in &places {
         let column = schema.column(*place);
         let wrong = |problem: &str| ForeignError {
@@ -50,6 +51,11 @@ pub(super) fn scan_parquet(
         };
         if column.max_rep_level() > 0 {
             return Err(wrong("is of lists, and must be of numbers"));
+        }
+        if let Some(unit) = durations.get(&column.path().string()) {
+            return Err(wrong(&format!(
+                "is of durations ({unit}), and must be of numbers: in pandas write df[name].dt.total_seconds()"
+            )));
         }
         match column.physical_type() {
             Physical::BOOLEAN
@@ -108,6 +114,23 @@ pub(super) fn scan_parquet(
         look(&numbers);
     }
     Ok(())
+}
+
+/// The columns of durations with their types. Parquet has none: what writes them with pandas says so beside the table, and in it are whole
+/// numbers of some unit.
+fn durations(reader: &SerializedFileReader<File>) -> HashMap<String, String> {
+    let notes = reader.metadata().file_metadata().key_value_metadata();
+    let of_pandas = notes.into_iter().flatten().filter(|note| note.key == "pandas");
+    let texts = of_pandas.filter_map(|note| serde_json::from_str(note.value.as_ref()?).ok());
+    let columns = texts.flat_map(|told: serde_json::Value| {
+        told["columns"].as_array().cloned().unwrap_or_default()
+    });
+    let type_of = |column: serde_json::Value| {
+        let [name, kind] =
+            ["name", "numpy_type"].map(|key| column[key].as_str().map(str::to_owned));
+        name.zip(kind).filter(|(_, kind)| kind.starts_with("timedelta"))
+    };
+    columns.filter_map(type_of).collect()
 }
 
 /// How a column is compressed, if that is not read: what these need is in C, or large.

@@ -135,8 +135,10 @@ fn columns_that_would_change_a_row_are_refused() {
     // An index beside names, and names that begin like comments.
     let table = "#,id,name,mass,Cx,Cy,Cz,Ixx,Iyy,Izz,mass_percent\n1,7,bus,1,0,0,0,1,1,1,5%\n#2,8,tank,1,0,0,0,1,1,1,\n";
     assert_eq!(read(table).unwrap().rows()[0].numbers().unwrap().deviations()[0], 0.05);
-    let table = "name,mass,Cx,Cy,Cz,Ixx,Iyy,Izz\n# old,1\n#2 thruster,1,0,0,0,1,1,1\n#a,1,2\n";
-    assert_eq!(read(table).unwrap().rows()[0].name(), "#2 thruster");
+    let table = "name,mass,Cx,Cy,Cz,Ixx,Iyy,Izz\n# old,1\n#2 thruster,1,0,0,0,1,1,1\n#a,1,2\n#3,1,0,0,0,1,1,1\n";
+    let names =
+        read(table).unwrap().rows().iter().map(|row| row.name().to_owned()).collect::<Vec<_>>();
+    assert_eq!(names, ["#2 thruster", "#3", "whole"]);
     assert!(with("uncertainty", "5%", "bus").unwrap_err().contains("no standard deviation"));
     // An assembly may be called a total; a part may not.
     assert!(with("note", "", "Total").unwrap_err().contains("sums up others"));
