@@ -83,8 +83,8 @@ impl MeanHalf {
         self.ln_density(q).max(self.ln_density(&opposite)) + LN_PI_SQUARED
     }
 
-    /// Fills a slice with independent draws: see
-    /// [`FisherBingham::sample_into`](crate::FisherBingham::sample_into).
+    /// Fills a slice with independent draws. Which ones depends on the length of the slice: those that are not in the half are drawn again
+    /// when the others are there.
     pub fn sample_into<R: Rng + ?Sized>(&self, rng: &mut R, out: &mut [UnitQuaternion<f64>]) {
         let mut kept = 0;
         while kept < out.len() {

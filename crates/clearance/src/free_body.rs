@@ -21,17 +21,24 @@ pub struct FreeBody {
     pub principal_moments: [f64; 3],
 }
 
+/// Entries may differ from their mirror images by this share of the largest.
+const SYMMETRIC: f64 = 1e-12;
+
 impl FreeBody {
     /// A body in the given state, with the inertia matrix about its mass centre, body axes, products as
-    /// tensor entries, kg·m².
+    /// tensor entries, kg·m². Entries that differ from their mirror images by rounding are replaced by the mean of both.
     ///
     /// # Errors
-    /// The matrix is not finite, not symmetric or not positive definite.
+    /// The matrix is not finite, not symmetric to 1e-12 of its largest entry or not positive definite.
     pub fn new(state: RigidState, inertia: Matrix3<f64>) -> Result<Self, FreeBodyError> {
         let refused = || FreeBodyError { inertia: inertia.transpose().into() };
-        if !(inertia.iter().all(|x| x.is_finite()) && inertia == inertia.transpose()) {
+        let off = (inertia - inertia.transpose()).amax();
+        if !(inertia.iter().all(|x| x.is_finite()) && off <= SYMMETRIC * inertia.amax()) {
             return Err(refused());
         }
+        let mean = |a: f64, b: f64| if a == b { a } else { a + 0.5 * (b - a) };
+        let upper = inertia.zip_map(&inertia.transpose(), mean).upper_triangle();
+        let inertia = Matrix3::from_fn(|i, j| upper[(i.min(j), i.max(j))]);
         let inverse_inertia = inertia.cholesky().ok_or_else(refused)?.inverse();
         let principal_moments: [f64; 3] = inertia.symmetric_eigenvalues().into();
         let sound = inverse_inertia.iter().all(|x| x.is_finite())
@@ -72,9 +79,9 @@ mod tests {
             let axes = Rotation3::from_scaled_axis(Vector3::from(turn));
             let diagonal = Matrix3::from_diagonal(&Vector3::from(moments.map(|x| x * scale)));
             let turned = axes * diagonal * axes.inverse();
-            let inertia = (turned + turned.transpose()) * 0.5;
-            let body = FreeBody::new(RigidState::default(), inertia).unwrap();
-            let one = body.inverse_inertia * inertia;
+            let body = FreeBody::new(RigidState::default(), turned).unwrap();
+            prop_assert_eq!(body.inertia, body.inertia.transpose());
+            let one = body.inverse_inertia * body.inertia;
             prop_assert!((one - Matrix3::identity()).amax() < 1e-11, "{}", one);
             let mut expected = moments.map(|x| x * scale);
             let mut found = body.principal_moments;

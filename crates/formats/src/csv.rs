@@ -2,11 +2,11 @@
 
 use crate::{
     FileBody, FileBodyError, FileProblem, MAX_BODIES, Products,
-    body::{Number, Reading},
+    body::{ENTRIES, Number, Reading},
     error::Refusal,
     products_comment::stated_products,
     summary_row::is_summary,
-    table_header::{FIELDS, MASS, NAME, PRODUCTS, find_header},
+    table_header::{BELOW, FIELDS, MASS, NAME, PRODUCTS, find_header},
     text::Text,
 };
 
@@ -59,20 +59,22 @@ fn reading<'a>(
         Some((raw, _)) if raw.trim().is_empty() => None,
         _ => number(MASS).transpose()?,
     };
-    let mut six = [Number::default(); 6];
-    for (column, entry) in six.iter_mut().enumerate() {
+    let mut nine = [[Number::default(); 3]; 3];
+    for (column, (i, j)) in ENTRIES.into_iter().enumerate() {
         if let Some(found) = number(column) {
-            *entry = found?;
+            nine[i][j] = found?;
         }
     }
-    Ok(Reading::of_six(mass, &six, products))
+    // The other half, in a table that has it, may say something else.
+    for (column, (i, j)) in (BELOW..).zip(&ENTRIES[3..]) {
+        nine[*j][*i] = number(column).transpose()?.unwrap_or(nine[*i][*j]);
+    }
+    Ok(Reading::of_nine(mass, &nine, products))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::ENTRIES;
-
     fn try_read(csv: &str) -> Result<Vec<FileBody>, Refusal> {
         read(&Text::new(csv.as_bytes(), true).unwrap(), Products::TensorEntries)
     }
@@ -108,6 +110,21 @@ mod tests {
         let csv =
             "# products = integrals, not tensor entries\nixx,iyy,izz,ixy,ixz,iyz\n1,2,3,.1,.2,.3";
         assert_eq!(six(&try_read(csv).unwrap()[0])[3..], [-0.1, -0.2, -0.3]);
+    }
+
+    /// Nine entries are read, as those of a full matrix are.
+    #[test]
+    fn the_other_half_is_read() {
+        let heading = "ixx,ixy,ixz,iyx,iyy,iyz,izx,I32,izz";
+        let bodies = try_read(&format!("{heading}\n10,.1,.2,-.1,11,.3,.2,.3,12")).unwrap();
+        let matrix = bodies[0].inertia().unwrap();
+        assert_eq!([matrix[(0, 1)], matrix[(1, 0)], matrix[(2, 1)]], [0.1, -0.1, 0.3]);
+        let places = bodies[0].reading().unwrap().places;
+        assert!(places.iter().flatten().all(Option::is_some) && places[0][1] != places[1][0]);
+        let message = |csv| try_read(csv).unwrap_err().problem.to_string();
+        let part = message("ixx,iyy,izz,ixy,ixz,iyz,iyx\n1,2,3,0,0,0,0");
+        assert!(part.contains("columns iyx, izx, izy: there must be all three or none"), "{part}");
+        assert!(message("ixx,iyy,izz,iyx,izx,izy\n1,2,3,0,0,0").contains("iyx"));
     }
 
     /// They were called kg·m² whatever the header said.

@@ -14,12 +14,13 @@ use crate::{
     units::{BadUnit, Dimension, SharedUnit, Unit, UnitProblem, longest_name, squeezed},
 };
 
-/// Columns that are looked for: the six entries, the mass, the name, and what the products are.
-pub(crate) const MASS: usize = 6;
-pub(crate) const NAME: usize = 7;
-pub(crate) const PRODUCTS: usize = 8;
-pub(crate) const FIELDS: [&str; 9] =
-    ["ixx", "iyy", "izz", "ixy", "ixz", "iyz", "mass", "name", "products"];
+/// Columns that are looked for: the six entries, the three below the diagonal, the mass, the name, and what the products are.
+pub(crate) const BELOW: usize = 6;
+pub(crate) const MASS: usize = 9;
+pub(crate) const NAME: usize = 10;
+pub(crate) const PRODUCTS: usize = 11;
+pub(crate) const FIELDS: [&str; 12] =
+    ["ixx", "iyy", "izz", "ixy", "ixz", "iyz", "iyx", "izx", "izy", "mass", "name", "products"];
 
 /// The column of a heading, and the unit that follows its name, or why that is none. What follows and is no unit
 /// may make another column of it: `ixx_sigma`. A sign is left out, for whoever reads the column to refuse.
@@ -61,6 +62,9 @@ fn column_of(name: &str) -> Option<usize> {
         "mass" | "m" => Some(MASS),
         "name" | "body" | "link" | "part" | "component" => Some(NAME),
         "products" | "poiconv" => Some(PRODUCTS),
+        "iyx" | "i21" => Some(BELOW),
+        "izx" | "i31" => Some(BELOW + 1),
+        "izy" | "i32" => Some(BELOW + 2),
         _ => entry_of(name),
     }
 }
@@ -173,7 +177,8 @@ fn header(text: &Text, row: &[Field], below: Option<&[Field]>) -> Result<Option<
             of_inertia.with(name, its_unit).map_err(refuse)?;
         }
     }
-    let products = columns[3..6].iter().flatten().count();
+    let count = |of: std::ops::Range<usize>| columns[of].iter().flatten().count();
+    let (products, below_diagonal) = (count(3..BELOW), count(BELOW..MASS));
     if products == 0 {
         let is_like = |field: &&Field| {
             let heading = field.of(text.as_str());
@@ -187,6 +192,10 @@ fn header(text: &Text, row: &[Field], below: Option<&[Field]>) -> Result<Option<
     if products != 0 && products != 3 {
         let at = row.first().map_or(0, |field| field.start);
         return Err(text.malformed(at, "columns ixy, ixz, iyz: there must be all three or none"));
+    }
+    if below_diagonal != 0 && below_diagonal != 3 {
+        let at = row.first().map_or(0, |field| field.start);
+        return Err(text.malformed(at, "columns iyx, izx, izy: there must be all three or none"));
     }
     let units = below.and(row_below).map(<[Field]>::to_vec);
     let inertia_kg_m2 = of_inertia.si();

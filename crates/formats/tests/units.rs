@@ -249,6 +249,12 @@ fn a_column_that_looks_like_a_product_is_refused_where_no_other_holds_it() {
                 );
                 let read = PartsTable::read(table.as_bytes(), None).unwrap();
                 assert_eq!(read.passed_over(), [heading.as_str()]);
+                if word == "I_y" {
+                    // The other half of the matrix is there as a whole or not at all.
+                    let message = checked(table.as_bytes()).unwrap_err().to_string();
+                    assert!(message.contains("iyx, izx, izy"), "{message}");
+                    continue;
+                }
                 assert!(checked(table.as_bytes()).unwrap().bodies()[0].inertia().is_ok());
                 assert!(ten(table.as_bytes()).is_ok());
             }

@@ -137,7 +137,7 @@ impl ImportanceSampling {
     fn of_the_rest(&self, probability: f64, confidence: Confidence) -> Interval {
         let misses = self.of_misses.effective();
         let runs = if misses > 0.0 {
-            self.runs as f64 * misses / self.of_misses.total()
+            (self.runs as f64 * misses / self.of_misses.total()).min(f64::MAX)
         } else {
             self.all.effective().min(self.runs as f64)
         };

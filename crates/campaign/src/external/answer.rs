@@ -61,9 +61,12 @@ pub(super) fn read(answer: &[u8], run: u64, outputs: &[Column]) -> Result<Vec<f6
     })
 }
 
-/// The number that a value is, NaN if it is none. One that is infinite may stand in quotation marks, for JSON has none.
+/// The number that a value is, NaN if it is none; a flag is 1 or 0. One that is infinite may stand in quotation marks, for JSON has none.
 fn number(value: &&RawValue) -> f64 {
     let text = value.get();
+    if let Ok(flag) = text.parse::<bool>() {
+        return f64::from(u8::from(flag));
+    }
     let word = text.trim_matches('"');
     let number = word.parse().ok().filter(|number: &f64| number.is_infinite() || word == text);
     number.unwrap_or(f64::NAN)
@@ -199,7 +202,7 @@ mod tests {
     use proptest::prelude::*;
 
     /// What may stand in the place of a number, which number that is, and how it is told.
-    const VALUES: [(&str, Option<f64>, &str); 26] = [
+    const VALUES: [(&str, Option<f64>, &str); 28] = [
         ("-1.5e3", Some(-1500.0), ""),
         ("0", Some(0.0), ""),
         ("1e-999", Some(0.0), ""),
@@ -225,7 +228,9 @@ mod tests {
         ("\"1.5\"", None, "\"1.5\""),
         ("\"an \\\"inf\"", None, "\"an \\\"inf\""),
         ("[1]", None, "[1]"),
-        ("true", None, "true"),
+        ("true", Some(1.0), ""),
+        ("false", Some(0.0), ""),
+        ("\"true\"", None, "\"true\""),
     ];
 
     proptest! {

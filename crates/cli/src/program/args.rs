@@ -167,8 +167,12 @@ pub(crate) struct ManArgs {
 #[derive(Args, Debug)]
 pub(crate) struct ScenarioArgs {
     /// Scenario file (TOML) [default: the built-in study of Peck (2003)]
+    #[arg(value_name = "SCENARIO", conflicts_with = "named")]
+    file: Option<PathBuf>,
+
+    /// The same as SCENARIO
     #[arg(long = "scenario", value_name = "FILE")]
-    pub(crate) file: Option<PathBuf>,
+    named: Option<PathBuf>,
 
     /// Runs of each model [default: as in the scenario]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole)]
@@ -181,6 +185,13 @@ pub(crate) struct ScenarioArgs {
     /// Seed of all random numbers [default: as in the scenario]
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = whole)]
     pub(crate) seed: Option<u64>,
+}
+
+impl ScenarioArgs {
+    /// The scenario file, if one is named.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        self.named.as_deref().or(self.file.as_deref())
+    }
 }
 
 #[derive(Args, Debug)]

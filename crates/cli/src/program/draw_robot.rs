@@ -75,7 +75,11 @@ pub(crate) fn draw_robot(arguments: &DrawArgs, path: &Path) -> Result<ExitCode, 
         Err(error) => Err(error),
         // The table is on standard output: what there is to say stands beside it.
         Ok(None) => {
-            say((left_as_they_are(&robot, &draw) + &warnings_of(&draw.summaries())).trim_end());
+            let links = draw.summaries();
+            // Refused draws make deviations smaller than those that are stated.
+            let told =
+                if arguments.inside.is_some() { table_of(&links) } else { warnings_of(&links) };
+            say((left_as_they_are(&robot, &draw) + &told).trim_end());
             Ok(ExitCode::SUCCESS)
         }
         Ok(Some(place)) => {

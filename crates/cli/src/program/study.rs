@@ -137,7 +137,7 @@ pub(crate) fn scenario(
 
 /// The scenario that is asked for.
 pub(crate) fn stated(arguments: &ScenarioArgs) -> Result<AnyScenario, ScenarioError> {
-    let mut scenario = scenario(arguments.file.as_deref(), arguments.seed)?;
+    let mut scenario = scenario(arguments.file(), arguments.seed)?;
     if let Some(runs) = arguments.runs {
         scenario = scenario.with_runs(runs)?;
     }

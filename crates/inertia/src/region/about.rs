@@ -34,7 +34,14 @@ impl Region {
             all.reduce(|a, b| a.zip_map(&b, pick)).unwrap_or_default()
         };
         let (low, high) = (end(f64::min), end(f64::max));
-        Self::solid_box((low + high) * 0.5, (high - low) * 0.5)
+        let centre = (low + high) * 0.5;
+        // The ends as they are rounded may lie within the outermost points.
+        let half = Vector3::from_fn(|i, _| {
+            let half = (high[i] - centre[i]).max(centre[i] - low[i]);
+            let holds = centre[i] + half >= high[i] && centre[i] - half <= low[i];
+            if holds { half } else { half.next_up() }
+        });
+        Self::solid_box(centre, half)
     }
 
     /// The smallest ellipsoid that holds points, m, to 1e-4 of its volume (Khachiyan 1996, doi:10.1287/moor.21.2.307), grown

@@ -27,7 +27,7 @@ use shards::{LARGEST_ARRAY, choose};
 /// Runs the verb, in a program that certain words call.
 pub(crate) fn slurm(arguments: &SlurmArgs, called: Vec<OsString>) -> Result<(), Box<dyn Error>> {
     let scenario = stated(&arguments.scenario)?;
-    if let Some(file) = &arguments.scenario.file {
+    if let Some(file) = arguments.scenario.file() {
         stays(file)?;
     }
     if let Some(problem) = scenario.check_shards()? {
@@ -39,7 +39,7 @@ pub(crate) fn slurm(arguments: &SlurmArgs, called: Vec<OsString>) -> Result<(), 
     let Some(path) = file_of(arguments.output.as_deref()) else {
         return Ok(to_standard_output(&script)?);
     };
-    if let Some(input) = &arguments.scenario.file {
+    if let Some(input) = arguments.scenario.file() {
         refuse_input(path, input)?;
     }
     let mut file = NewFile::create(path, arguments.force)?;
@@ -110,7 +110,7 @@ fn script(
         models,
         program: if called.is_empty() { vec![env::current_exe()?.into()] } else { called },
         folder: env::current_dir()?,
-        scenario: arguments.scenario.file.as_deref().map(place).transpose()?,
+        scenario: arguments.scenario.file().map(place).transpose()?,
         runs: scenario.runs(),
         vehicles: scenario.fleet().map(Fleet::vehicles),
         seed: arguments.scenario.seed,
