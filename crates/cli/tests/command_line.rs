@@ -119,6 +119,21 @@ fn help_breaks_lines_where_they_are_full() {
     }
 }
 
+/// A scenario file may stand in its place or be named, and not both.
+#[test]
+fn a_scenario_stands_in_its_place() {
+    let shell = Shell::new();
+    let scenario = shell.scenario("name = \"peck-2003\"", "name = \"mine\"");
+    for stated in [&[scenario.as_str()][..], &["--scenario", &scenario]] {
+        let output = shell.run(&[&["study"], stated, &["--runs", "20", "--force"]].concat());
+        assert!(output.status.success(), "{output:?}");
+        assert!(shell.path().join("target/study/mine/report.html").exists());
+        fs::remove_dir_all(shell.path().join("target")).unwrap();
+    }
+    let both = shell.refused(&["study", &scenario, "--scenario", &scenario]);
+    assert!(both.contains("cannot be used with"), "{both}");
+}
+
 #[test]
 fn bad_flags_are_refused() {
     let shell = Shell::new();

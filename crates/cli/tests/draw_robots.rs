@@ -159,7 +159,10 @@ pub(crate) fn draw(shell: &Scratch, arguments: &[&str]) -> Vec<u8> {
     let message = String::from_utf8_lossy(&output.stderr);
     // Beside a table on standard output stands what there is to say of it, and nothing else.
     let told = ["left as", "not drawn", "warning: ", "         also for "];
-    let is_told = message.lines().all(|line| told.iter().any(|words| line.starts_with(words)));
+    // With --inside these are the deviations, too.
+    let is_told = arguments.contains(&"--inside")
+        && message.contains("standard deviations of the draws")
+        || message.lines().all(|line| told.iter().any(|words| line.starts_with(words)));
     assert!(output.status.success() && is_told, "{arguments:?}: {message}");
     output.stdout
 }
