@@ -233,6 +233,8 @@ proptest! {
             DispersionModel::from(wishart);
             FixedAttitude::new(random.attitude());
             AxesLaw::from(random.axes());
+            AxesLaw::from(AboutAxis::new(random.attitude(), Vector3::y_axis()));
+            AxesLaw::from(FisherBingham::new(random.covariance::<4>(2.0), Vector4::new(1.0, 0.0, -0.3, 2.0)).unwrap());
             JacobianTwice::new(random.axes()).unwrap();
             Correlation::new(&[(0, 2, random.between(-1.0, 1.0)), (1, 4, 0.3)]).unwrap();
         }

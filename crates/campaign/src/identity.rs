@@ -56,13 +56,14 @@ impl fmt::Display for Difference {
     }
 }
 
-/// The beginning of a value.
+/// The beginning of a value, in quotation marks if these are.
 fn short(value: &str) -> String {
     const MOST: usize = 60;
     if value.chars().count() <= MOST {
         return value.to_owned();
     }
-    value.chars().take(MOST).chain(['…']).collect()
+    let close = value.starts_with('"').then_some('"');
+    value.chars().take(MOST).chain(['…']).chain(close).collect()
 }
 
 #[cfg(test)]

@@ -125,6 +125,8 @@ impl BatchAttitudes for AxesLaw {
             Self::JacobianTwice(law) => law.attitudes_into(rng, out),
             Self::Uniform(law) => law.attitudes_into(rng, out),
             Self::Fixed(law) => law.attitudes_into(rng, out),
+            Self::FisherBingham(law) => law.attitudes_into(rng, out),
+            Self::AboutAxis(law) => law.attitudes_into(rng, out),
         }
     }
 }

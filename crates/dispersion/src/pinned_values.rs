@@ -6,9 +6,11 @@
 //! take the place of those below. A law that is added to one of the enumerations does not compile
 //! without a line here.
 
-use gyradius_attitude::{MeanHalf, RadiallyConstrainedGaussian, UniformAttitude};
+use gyradius_attitude::{
+    AboutAxis, FisherBingham, MeanHalf, RadiallyConstrainedGaussian, UniformAttitude,
+};
 use gyradius_inertia::{Inertia, InertiaMatrix, RootSecondMoments};
-use nalgebra::{Matrix3, Matrix4, SMatrix, UnitQuaternion, Vector4};
+use nalgebra::{Matrix3, Matrix4, SMatrix, UnitQuaternion, Vector3, Vector4};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::{Distribution, Exp};
 
@@ -296,6 +298,16 @@ pinned! {
         0.10259783520851541, -0.20519567041703082, 0.3077935056255462, 0.9233805168766387,
         0.10259783520851541, -0.20519567041703082, 0.3077935056255462, 0.9233805168766387,
         0.10259783520851541, -0.20519567041703082, 0.3077935056255462, 0.9233805168766387,
+    ];
+    FisherBingham: [AxesLaw::from(FisherBingham::new(Matrix4::identity() * 3.0, Vector4::new(0.5, 0.0, -1.0, 2.0)).unwrap())] => [
+        0.8789628235336395, 0.223162582308498, 0.17574945560342903, 0.3830599764505204,
+        -0.0884445790103085, -0.22240712882592562, -0.9233070456668078, 0.30036099099771374,
+        0.7510285066560651, 0.009766027203908595, 0.18639942220730196, 0.6333372421572864,
+    ];
+    AboutAxis: [AxesLaw::from(AboutAxis::new(narrow().mean(), Vector3::z_axis()))] => [
+        -0.2121815847251186, 0.0872384895038064, 0.3748292856639367, -0.898260222686775,
+        -0.0699809859077511, -0.21848167099037752, 0.8653879706943859, 0.4455020552478791,
+        -0.11404180324183262, 0.19906291985379787, -0.25506334983589574, -0.9393141692868916,
     ];
 }
 

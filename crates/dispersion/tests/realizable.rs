@@ -5,14 +5,16 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot be set up has failed")]
 
-use gyradius_attitude::{MeanHalf, RadiallyConstrainedGaussian, UniformAttitude};
+use gyradius_attitude::{
+    AboutAxis, FisherBingham, MeanHalf, RadiallyConstrainedGaussian, UniformAttitude,
+};
 use gyradius_dispersion::{
     AnyBody, AxesLaw, CorrelatedRoots, DispersionModel, EmpiricalRoots, EntrywiseGaussian,
     FixedAttitude, JacobianTwice, LogCholeskyGaussian, PrincipalDispersion, RealizableOnly,
     RootLaw, ScalarRoots, Wishart,
 };
 use gyradius_inertia::{Inertia, InertiaMatrix, RootSecondMoments};
-use nalgebra::{Matrix3, Matrix4, SMatrix, UnitQuaternion};
+use nalgebra::{Matrix3, Matrix4, SMatrix, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -79,11 +81,16 @@ fn any_axes(rng: &mut impl Rng) -> AxesLaw {
         };
         RadiallyConstrainedGaussian::new(mean, covariance).unwrap()
     };
-    match rng.random_range(0..6) {
+    match rng.random_range(0..8) {
         0 | 1 => law(rng).into(),
         2 => MeanHalf::new(law(rng)).into(),
         3 => JacobianTwice::new(law(rng)).map_or(UniformAttitude.into(), AxesLaw::from),
         4 => UniformAttitude.into(),
+        5 => AboutAxis::new(mean, Vector3::x_axis()).into(),
+        6 => {
+            let linear = mean.coords * power(rng, -1.0, 1.0);
+            FisherBingham::new(Matrix4::identity(), linear).unwrap().into()
+        }
         _ => FixedAttitude::new(mean).into(),
     }
 }

@@ -8,6 +8,8 @@ mod way;
 pub use score_law::ScoreLaw;
 pub use search::ScoreSearch;
 
+use score_law::LogParts;
+
 use crate::{
     Confidence, ImportanceEstimate, ImportanceSampling, Interval, Proportion, StatisticsError,
     WeightWarning, importance::RARE,
@@ -66,6 +68,7 @@ pub struct SteeredSampling {
     /// The law that scores are to be drawn from.
     #[getset(get = "pub")]
     law: ScoreLaw,
+    log_parts: LogParts,
     not_reached: usize,
     unsettled: Option<usize>,
     evaluations: u64,
@@ -86,6 +89,7 @@ impl SteeredSampling {
         }
         Ok(Self {
             law: search.law().clone(),
+            log_parts: search.law().log_parts(),
             not_reached: search.not_reached(),
             unsettled: search.unsettled(),
             evaluations: search.evaluations(),
@@ -102,7 +106,7 @@ impl SteeredSampling {
     /// [`StatisticsError::Columns`] if there are not as many scores as the law has, [`StatisticsError::LogWeight`] if one is not finite.
     pub fn push(&mut self, scores: &[f64], excess: f64) -> Result<(), StatisticsError> {
         crate::rank_correlation::same_length(self.law.scores(), scores.len())?;
-        self.hits.push(self.law.log_weight(scores), excess >= 0.0)?;
+        self.hits.push(self.log_parts.log_weight(scores), excess >= 0.0)?;
         self.evaluations += 1;
         self.without_excess += u64::from(excess.is_nan());
         Ok(())

@@ -137,7 +137,7 @@ pub(crate) enum Command {
     /// of the probability, where plain runs take ten times as many for each. Nothing is written.
     ///
     /// Importance sampling: masses, mass centres, springs and quantities are drawn from laws under which the event is less rare, and each
-    /// run counts with the ratio of the densities, which is exact. Two searches find these laws level by level, and a sample
+    /// run counts with the ratio of the densities, which is exact. Searches find these laws level by level, and a sample
     /// gives the probability. Inertias keep their own laws. The answer says what was drawn from which law.
     #[command(after_help = RARE_EXAMPLES)]
     Rare(RareArgs),

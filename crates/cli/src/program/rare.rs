@@ -23,8 +23,14 @@ pub(crate) fn rare(arguments: &RareArgs) -> Result<ExitCode, Box<dyn Error>> {
         threads: arguments.threads,
         stop: Some(signals.stop()),
     };
-    let found = progress::show(options.most_runs(), "runs at most", |report| {
-        scenario.rare(&arguments.event, &options, report)
+    let most = options.most_runs();
+    let what = match options.method {
+        RareMethod::Subset { .. } => "runs at most",
+        RareMethod::Importance { .. } => "runs, or more if there are many ways to the event",
+    };
+    let found = progress::show(most, what, |report| {
+        // What takes more is not at its end yet.
+        scenario.rare(&arguments.event, &options, &|done| report(done.min(most.saturating_sub(1))))
     });
     let found = match found {
         Err(StudyError::Campaign(CampaignError::Stopped)) => {

@@ -1,6 +1,8 @@
 //! A law of principal axes that is chosen at run time.
 
-use gyradius_attitude::{MeanHalf, RadiallyConstrainedGaussian, UniformAttitude};
+use gyradius_attitude::{
+    AboutAxis, FisherBingham, MeanHalf, RadiallyConstrainedGaussian, UniformAttitude,
+};
 use nalgebra::UnitQuaternion;
 use rand::Rng;
 use rand_distr::Distribution;
@@ -26,6 +28,10 @@ pub enum AxesLaw {
     Uniform(UniformAttitude),
     /// One attitude.
     Fixed(FixedAttitude),
+    /// A Fisher-Bingham law, whatever its form is.
+    FisherBingham(Box<FisherBingham>),
+    /// Every turn about a known axis equally likely.
+    AboutAxis(AboutAxis),
 }
 
 macro_rules! each {
@@ -36,6 +42,8 @@ macro_rules! each {
             AxesLaw::JacobianTwice($law) => $body,
             AxesLaw::Uniform($law) => $body,
             AxesLaw::Fixed($law) => $body,
+            AxesLaw::FisherBingham($law) => $body,
+            AxesLaw::AboutAxis($law) => $body,
         }
     };
 }
@@ -72,4 +80,6 @@ any_of!(
     JacobianTwice(JacobianTwice),
     Uniform(UniformAttitude),
     Fixed(FixedAttitude),
+    FisherBingham(FisherBingham),
+    AboutAxis(AboutAxis),
 );

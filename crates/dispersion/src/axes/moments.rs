@@ -181,7 +181,7 @@ impl AttitudeMoments for JacobianTwice {
 mod tests {
     use super::super::whole_sphere::WholeSphere;
     use super::*;
-    use crate::{AxesLaw, KnownMoments, PrincipalDispersion, ScalarRoots};
+    use crate::{AxesLaw, KnownMoments, PrincipalDispersion, RootMoments, ScalarRoots};
     use gyradius_inertia::{Inertia, RootSecondMoments};
     use nalgebra::{Matrix4, Quaternion, Unit, Vector3, Vector4};
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
@@ -308,6 +308,31 @@ mod tests {
             assert!((free.mean()[e] - fixed.mean()[e]).abs() < 1e-12);
             assert!(free.deviations()[e] < 1e-6);
         }
+    }
+
+    /// Chosen at run time they are the same laws, as the axes of a body and by themselves.
+    #[test]
+    fn any_law_is_the_law_inside() {
+        let mean = UnitQuaternion::from_euler_angles(0.3, -0.8, 1.1);
+        let about = AboutAxis::new(mean, Vector3::z_axis());
+        let linear = Vector4::new(0.3, -1.0, 2.0, 0.5);
+        let form = Matrix4::from_diagonal(&Vector4::new(3.0, 1.0, 0.0, 7.0));
+        let bingham = FisherBingham::new(form, linear).unwrap();
+        let roots = ScalarRoots::normal(RootSecondMoments::new([2.0, 3.0, 5.0]).unwrap(), [0.1; 3]);
+        let roots = roots.unwrap();
+        let same = |any: AxesLaw, own: &dyn AttitudeMoments, drawn: [UnitQuaternion<f64>; 2]| {
+            let k = roots.second_moment_statistics();
+            assert_eq!(any.entry_moments(&k), own.entry_moments(&k));
+            assert_eq!(any.ln_density_of_attitude(&mean), own.ln_density_of_attitude(&mean));
+            assert_eq!(drawn[0], drawn[1]);
+        };
+        let rng = || ChaCha8Rng::seed_from_u64(3);
+        let any = AxesLaw::from(about);
+        let drawn = [any.sample(&mut rng()), about.sample(&mut rng())];
+        same(any, &about, drawn);
+        let any = AxesLaw::from(bingham.clone());
+        let drawn = [any.sample(&mut rng()), bingham.sample(&mut rng())];
+        same(any, &bingham, drawn);
     }
 
     /// A law that says no more than it must.

@@ -268,6 +268,20 @@ impl std::fmt::Display for ScalarLawForm {
     }
 }
 
+/// As in files: an inline table of TOML.
+///
+/// ```
+/// use gyradius_dispersion::ScalarLaw;
+///
+/// assert_eq!(ScalarLaw::normal(2.0, 0.1)?.to_string(), "{ law = \"normal\", sigma = 0.1, mean = 2.0 }");
+/// # Ok::<(), gyradius_dispersion::ScalarLawError>(())
+/// ```
+impl std::fmt::Display for ScalarLaw {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        ScalarLawForm::from(self.clone()).fmt(f)
+    }
+}
+
 #[cfg(feature = "serde")]
 mod file {
     use super::{Declaration, Of, ScalarLawForm, Value};

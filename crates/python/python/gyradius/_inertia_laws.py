@@ -44,7 +44,7 @@ class InertiaLaw(LawOfBodies):
         roots : sequence of three `ScalarLaw` or numbers
         axes : AttitudeLaw
             Of the attitudes q that take body components to principal components, so that a draw is R(q)ᵀ diag(moments) R(q): see
-            `fixed_attitude`. One that has a form in files: not a Fisher-Bingham law, nor turns about an axis.
+            `fixed_attitude`.
         """
         if not isinstance(axes, AttitudeLaw):
             raise ValueError(f"axes = {axes!r}: it must be an AttitudeLaw")

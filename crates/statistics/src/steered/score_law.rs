@@ -122,6 +122,7 @@ impl Single {
 }
 
 /// The logarithm of the density of one score over that of its own law. Its logarithms are taken once for all scores.
+#[derive(Clone, Debug)]
 enum LogRatio {
     Normal { mean: f64, deviation: f64, log: f64 },
     Tail { tail: Tail, within: f64, without: f64 },
@@ -142,6 +143,7 @@ impl LogRatio {
 }
 
 /// The logarithms of what the parts of a mixture have at scores: of the share, and of the density over that of the own law.
+#[derive(Clone, Debug)]
 pub(super) struct LogParts(Vec<(f64, Vec<LogRatio>)>);
 
 impl LogParts {
@@ -160,6 +162,11 @@ impl LogParts {
             share + singles.iter().zip(scores).map(ratio).sum::<f64>()
         };
         self.0.iter().map(part).collect()
+    }
+
+    /// As [`ScoreLaw::log_weight`].
+    pub(super) fn log_weight(&self, scores: &[f64]) -> f64 {
+        -log_sum(&self.at(scores))
     }
 }
 
@@ -233,8 +240,12 @@ impl ScoreLaw {
         if self.is_own() {
             return 0.0;
         }
-        let parts = self.parts.iter().map(|part| (part.share, part.singles.as_slice()));
-        -log_sum(&LogParts::new(parts).at(scores))
+        self.log_parts().log_weight(scores)
+    }
+
+    /// What tells its weights, to be asked at many scores.
+    pub(super) fn log_parts(&self) -> LogParts {
+        LogParts::new(self.parts.iter().map(|part| (part.share, part.singles.as_slice())))
     }
 }
 

@@ -27,8 +27,9 @@ const MOST_LOST: usize = 3;
 /// are several ways, as to both limits of an absolute value. Standard deviations are kept between 0.3 and 3, and stay 1 unless they are surely
 /// another; means are shrunk by what they owe to chance (James & Stein 1961).
 ///
-/// **Two such searches know nothing of each other. Then it starts again for what neither has found.** A run counts there with the probability that it would be from the own law if it were drawn
-/// from the mixture of a tenth of the own law and of all that was found: runs near a known way hardly count, those of another way do. It ends
+/// **Two such searches know nothing of each other. Then it starts again for what neither has found.** A run counts there with the probability
+/// that it would be from the own law if it were drawn from the mixture of a tenth of the own law and of all that was found: runs near a known
+/// way hardly count, those of another way do. It ends
 /// when so little of the probability is left that it does not matter, 2 % of what was found; where several ways were found, two searches
 /// have to say so. A search that comes to no answer is done again, at most twice.
 #[derive(Clone, Debug, getset::CopyGetters, getset::Getters)]
@@ -50,6 +51,8 @@ pub struct ScoreSearch {
 }
 
 impl ScoreSearch {
+    /// It takes no more levels where there is one way to the event.
+    pub const LEVELS_OF_ONE_WAY: usize = (INDEPENDENT + 1) * WaySearch::MOST_LEVELS;
     /// It gives up after so many levels.
     pub const MOST_LEVELS: usize = MOST_SEARCHES * WaySearch::MOST_LEVELS;
 

@@ -150,9 +150,17 @@ fn two_ways_are_both_found() {
         for scores in [1, 10, 30] {
             let plan = Plan { scores, per_level: 1000.max(100 * scores), ..PLAN };
             let truth = 2.0 * tail::normal(limit);
-            assert_covers(&format!("either side of {scores} scores"), plan, truth, &|z, _| {
-                sum(z).abs() - limit
-            });
+            let (what, excess) =
+                (format!("either side of {scores} scores"), |z: &[f64], _: &mut ChaCha8Rng| {
+                    sum(z).abs() - limit
+                });
+            if scores < 30 {
+                assert_covers(&what, plan, truth, &excess);
+            } else {
+                // Of 12 intervals of 95 % less than 9 hold the truth once in 4,000 times.
+                let (covered, warned, mean) = covers(&what, plan, truth, 12, &excess);
+                assert!(covered >= 9 && warned <= 2 && (mean - 1.0).abs() < 0.05, "{what}");
+            }
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{
     fit::{self, Elite},
-    score_law::{OWN, ScoreLaw, Single, Tail},
+    score_law::{LogParts, OWN, ScoreLaw, Single, Tail},
 };
 use crate::{StatisticsError, error::share};
 
@@ -96,6 +96,31 @@ struct Told<'a> {
     weight: f64,
 }
 
+impl<'a> Told<'a> {
+    /// A run of a law, and the law of what is known.
+    fn new(
+        scores: &'a [f64],
+        excess: f64,
+        own: &LogParts,
+        known: Option<&LogParts>,
+    ) -> Result<Self, StatisticsError> {
+        let weight_of = |law: &LogParts| {
+            let log = law.log_weight(scores);
+            let unfit = scores.iter().copied().chain([log]).find(|x| !x.is_finite());
+            match unfit {
+                Some(value) => Err(StatisticsError::LogWeight { value, most: -OWN.ln() }),
+                None => Ok(libm::exp(log)),
+            }
+        };
+        let counts = match known {
+            Some(known) => OWN * weight_of(known)?,
+            None => 1.0,
+        };
+        let excess = excess.max(f64::NEG_INFINITY);
+        Ok(Self { scores, excess, counts, weight: counts * weight_of(own)? })
+    }
+}
+
 impl WaySearch {
     /// It gives up after so many levels.
     pub(super) const MOST_LEVELS: usize = 25;
@@ -178,7 +203,12 @@ impl WaySearch {
     /// Takes the runs that were asked for: the scores of each, and how far it is beyond the limit.
     pub(super) fn tell(&mut self, runs: &[(Vec<f64>, f64)]) -> Result<(), StatisticsError> {
         crate::rank_correlation::same_length(self.asks(), runs.len())?;
-        let told = runs.iter().map(|(scores, excess)| self.told(scores, *excess));
+        let known = self.known.as_ref().map(|known| known.law.log_parts());
+        let own = self.law.log_parts();
+        let told = runs.iter().map(|(scores, excess)| {
+            crate::rank_correlation::same_length(self.law.scores(), scores.len())?;
+            Told::new(scores, *excess, &own, known.as_ref())
+        });
         let told = told.collect::<Result<Vec<_>, _>>()?;
         if self.is_done() {
             return Ok(());
@@ -238,29 +268,6 @@ impl WaySearch {
             self.law = ScoreLaw::mixed(self.law.scores(), OWN, others);
         }
         Ok(())
-    }
-
-    /// A run with its weights.
-    fn told<'a>(&self, scores: &'a [f64], excess: f64) -> Result<Told<'a>, StatisticsError> {
-        crate::rank_correlation::same_length(self.law.scores(), scores.len())?;
-        let most = -OWN.ln();
-        if let Some(&value) = scores.iter().find(|score| !score.is_finite()) {
-            return Err(StatisticsError::LogWeight { value, most });
-        }
-        let weight_of = |law: &ScoreLaw| {
-            let value = law.log_weight(scores);
-            if value.is_finite() {
-                Ok(libm::exp(value))
-            } else {
-                Err(StatisticsError::LogWeight { value, most })
-            }
-        };
-        let counts = match &self.known {
-            Some(known) => OWN * weight_of(&known.law)?,
-            None => 1.0,
-        };
-        let excess = excess.max(f64::NEG_INFINITY);
-        Ok(Told { scores, excess, counts, weight: counts * weight_of(&self.law)? })
     }
 
     /// Whether nothing more is asked for.

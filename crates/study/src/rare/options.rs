@@ -39,7 +39,7 @@ pub enum RareMethod {
 }
 
 impl RareOptions {
-    /// How many runs it may take; most events take fewer.
+    /// How many runs it may take, most events fewer. Importance sampling takes more only where there are many ways to the event.
     #[must_use]
     pub fn most_runs(&self) -> u64 {
         let per_level = self.per_level as u64;
@@ -47,9 +47,9 @@ impl RareOptions {
             RareMethod::Subset { replicas } => {
                 DIGITS.saturating_mul(per_level).saturating_mul((replicas as u64).saturating_add(1))
             }
-            RareMethod::Importance { sample } => {
-                (ScoreSearch::MOST_LEVELS as u64).saturating_mul(per_level).saturating_add(sample)
-            }
+            RareMethod::Importance { sample } => (ScoreSearch::LEVELS_OF_ONE_WAY as u64)
+                .saturating_mul(per_level)
+                .saturating_add(sample),
         }
     }
 }
