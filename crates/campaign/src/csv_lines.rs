@@ -12,7 +12,7 @@ const MARK: &[u8] = "\u{feff}".as_bytes();
 /// A line that begins with `#` and has more bytes is a comment.
 const LONGEST: usize = 1 << 16;
 /// What spreadsheets write into a cell whose formula has no value, in small letters.
-pub(crate) const ERRORS: [&str; 9] =
+const ERRORS: [&str; 9] =
     ["#div/0!", "#n/a", "#name?", "#null!", "#num!", "#ref!", "#value!", "#calc!", "#spill!"];
 
 /// Hands out the text of a table without its comments, and with `""` in each blank line below the names of the columns, if there is one
@@ -36,6 +36,8 @@ pub(crate) struct CsvLines<R> {
     /// What waits to be handed out, from here on.
     ready: Vec<u8>,
     given: usize,
+    /// Why nothing more is handed out after that.
+    refused: Option<io::Error>,
 }
 
 /// The line with the names of the columns.
@@ -48,10 +50,6 @@ struct Names {
 impl Names {
     fn new() -> Self {
         Self { separators: 0, are_ended: false }
-    }
-
-    fn count(&mut self) {
-        self.separators += usize::from(!self.are_ended);
     }
 }
 
@@ -85,6 +83,7 @@ impl<R: Read> CsvLines<R> {
             held: Vec::new(),
             ready: Vec::new(),
             given: 0,
+            refused: None,
         }
     }
 
@@ -165,13 +164,11 @@ impl<R: Read> CsvLines<R> {
             (_, other) if other == self.separator => Place::CellStart,
             (_, _) => Place::Cell,
         };
-        match (self.place, &mut self.named) {
-            (Place::LineStart | Place::AfterReturn, Some(names)) => names.are_ended = true,
-            (Place::LineStart | Place::AfterReturn, None) => {}
-            (Place::CellStart, names) => names.get_or_insert(Names::new()).count(),
-            (Place::Cell | Place::Quoted | Place::AfterQuote | Place::Held, names) => {
-                names.get_or_insert(Names::new());
-            }
+        if !matches!(self.place, Place::LineStart | Place::AfterReturn) {
+            let names = self.named.get_or_insert(Names::new());
+            names.separators += usize::from(self.place == Place::CellStart && !names.are_ended);
+        } else if let Some(names) = &mut self.named {
+            names.are_ended = true;
         }
         Ok(())
     }
@@ -234,7 +231,7 @@ impl<R: Read> CsvLines<R> {
 }
 
 /// Whether a cell has what a spreadsheet writes where a formula has no value.
-fn is_error(cell: &[u8]) -> bool {
+pub(crate) fn is_error(cell: &[u8]) -> bool {
     let cell = cell.trim_ascii();
     ERRORS.iter().any(|error| cell.eq_ignore_ascii_case(error.as_bytes()))
 }
@@ -243,6 +240,9 @@ impl<R: Read> Read for CsvLines<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         // What was read may all be a comment.
         while self.given == self.ready.len() {
+            if let Some(refused) = self.refused.take() {
+                return Err(refused);
+            }
             let mut bytes = [0; AT_ONCE];
             let mut read = 0;
             // As many as tell the mark of an encoding.
@@ -257,11 +257,13 @@ impl<R: Read> Read for CsvLines<R> {
             let bytes = &bytes[..read];
             let marked = if self.has_begun { None } else { bytes.strip_prefix(MARK) };
             self.has_begun = true;
-            self.take_all(marked.unwrap_or(bytes))?;
+            let mut taken = self.take_all(marked.unwrap_or(bytes));
+            if read == 0 && self.place == Place::Held {
+                taken = self.end_held();
+            }
+            // What stands before it is read first: the names may be all that is wanted.
+            self.refused = taken.err();
             if read == 0 {
-                if self.place == Place::Held {
-                    self.end_held()?;
-                }
                 break;
             }
         }
@@ -380,6 +382,20 @@ mod tests {
             let quoted = row("x") + &row("0").repeat(before) + &row(&format!("\"{id}\""));
             prop_assert_eq!(read(&quoted, columns, 7).unwrap().1.len(), before + 1);
         }
+    }
+
+    /// Which separator a table has is found by trying: a comment that would be a row under another one refuses nothing.
+    #[test]
+    fn comments_are_those_of_the_right_separator() {
+        let text = "id;x\n1;0.5\n#note\n2;0.7\n";
+        let of = |separator: u8| {
+            let mut builder = csv::ReaderBuilder::new();
+            builder.delimiter(separator).comment(Some(b'#'));
+            builder.from_reader(CsvLines::new(text.as_bytes(), separator, false))
+        };
+        assert_eq!(of(b',').headers().unwrap(), vec!["id;x"]);
+        assert_eq!(of(b',').records().filter(Result::is_err).count(), 1);
+        assert_eq!(of(b';').records().filter(Result::is_ok).count(), 2);
     }
 
     /// A column of numbers may be called `#`.

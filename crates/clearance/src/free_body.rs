@@ -36,9 +36,10 @@ impl FreeBody {
         if !(inertia.iter().all(|x| x.is_finite()) && off <= SYMMETRIC * inertia.amax()) {
             return Err(refused());
         }
-        let mean = |a: f64, b: f64| if a == b { a } else { a + 0.5 * (b - a) };
-        let upper = inertia.zip_map(&inertia.transpose(), mean).upper_triangle();
-        let inertia = Matrix3::from_fn(|i, j| upper[(i.min(j), i.max(j))]);
+        let inertia = Matrix3::from_fn(|i, j| {
+            let (above, below) = (inertia[(i.min(j), i.max(j))], inertia[(i.max(j), i.min(j))]);
+            if above == below { above } else { above + 0.5 * (below - above) }
+        });
         let inverse_inertia = inertia.cholesky().ok_or_else(refused)?.inverse();
         let principal_moments: [f64; 3] = inertia.symmetric_eigenvalues().into();
         let sound = inverse_inertia.iter().all(|x| x.is_finite())

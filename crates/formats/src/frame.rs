@@ -217,10 +217,10 @@ fn mjcf(node: Node<'_, '_>, angles: &Angles) -> Result<Frame, LinkProblem> {
 fn sdf(node: Node<'_, '_>) -> Result<Frame, LinkProblem> {
     let pose = node.child("pose");
     if let Some(pose) = pose {
+        // The link's own frame may be named, too.
+        let own = node.parent().and_then(|link| link.attribute("name")).unwrap_or_default();
+        let is_other = |frame: &&str| !frame.trim().is_empty() && frame.trim() != own.trim();
         for name in ["relative_to", "frame"] {
-            // The link's own frame may be named, too.
-            let own = node.parent().and_then(|link| link.attribute("name")).unwrap_or_default();
-            let is_other = |frame: &&str| !frame.trim().is_empty() && frame.trim() != own.trim();
             if let Some(frame) = pose.attribute(name).filter(is_other) {
                 return Err(LinkProblem::RelativeTo { frame: frame.to_owned() });
             }

@@ -4,7 +4,7 @@ use std::{fs::File, io::Read, path::Path, sync::Arc};
 
 use super::{Columns, ForeignError, places, status};
 use crate::{
-    csv_lines::{CsvLines, ERRORS},
+    csv_lines::{CsvLines, is_error},
     failure::{Failure, OK},
 };
 
@@ -143,6 +143,6 @@ pub(super) fn number(cell: &str) -> Option<Option<f64>> {
     match small.as_str() {
         "true" => Some(Some(1.0)),
         "false" => Some(Some(0.0)),
-        other => (MISSING.contains(&other) || ERRORS.contains(&other)).then_some(None),
+        other => (MISSING.contains(&other) || is_error(other.as_bytes())).then_some(None),
     }
 }

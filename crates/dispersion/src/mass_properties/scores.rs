@@ -195,7 +195,7 @@ impl<F: Fn(f64) -> f64> Scores<'_, F> {
         let correlation = Correlation::new(&pairs).unwrap_or_default();
         if atoms.iter().any(Option::is_some) {
             let over = order.iter().enumerate().map(|(i, &at)| match atoms[at].take() {
-                Some(atoms) => Over::Atoms(atoms),
+                Some(atoms) => Over::Values(atoms),
                 None => Over::Rule(self.laws[block[at]], rule(i)),
             });
             let (weights, values) = Steps::new(&correlation, over.collect(), &order).nodes();

@@ -1,7 +1,7 @@
 //! Nodes for scalars with a Gaussian copula of which some have laws of single values: quadrature that breaks where a value becomes the
 //! next.
 
-use crate::{Correlation, ScalarLaw, normal};
+use crate::{Correlation, ScalarLaw, normal, truncated_normal::share};
 
 /// Conditional scores beyond this have no weight that counts.
 const END: f64 = 8.5;
@@ -19,12 +19,12 @@ const RULE: [(f64, f64); 4] = [
 ];
 
 /// A value and its probability.
-pub(crate) type Atom = (f64, f64);
+type Atom = (f64, f64);
 
 /// How a scalar is integrated over, given the scores of those before it.
-pub(super) enum Over<'a> {
+pub(super) enum Over<'a, V = Vec<Atom>> {
     /// A law of these values, in rising order.
-    Atoms(Vec<Atom>),
+    Values(V),
     /// Weights and scores.
     Rule(&'a ScalarLaw, &'a [(f64, f64)]),
 }
@@ -40,14 +40,9 @@ struct Step {
 pub(super) struct Steps<'a> {
     /// The lower factor of the correlations, row by row.
     factor: Vec<Vec<f64>>,
-    over: Vec<Given<'a>>,
+    over: Vec<Over<'a, Vec<Step>>>,
     places: &'a [usize],
     width: f64,
-}
-
-enum Given<'a> {
-    Steps(Vec<Step>),
-    Rule(&'a ScalarLaw, &'a [(f64, f64)]),
 }
 
 impl<'a> Steps<'a> {
@@ -64,7 +59,7 @@ impl<'a> Steps<'a> {
         let factor = (0..n).map(|i| columns.iter().map(|column| column[i]).collect()).collect();
         let count = |(width, most): (f64, usize)| -> f64 {
             let of = |over: &Over<'_>| match over {
-                Over::Atoms(atoms) => {
+                Over::Values(atoms) => {
                     RULE.len() as f64 * (2.0 * END / width + atoms.len().min(most) as f64)
                 }
                 Over::Rule(_, rule) => rule.len() as f64,
@@ -73,11 +68,11 @@ impl<'a> Steps<'a> {
         };
         let [.., last] = PLANS;
         let (width, most) = PLANS.into_iter().find(|plan| count(*plan) <= MOST).unwrap_or(last);
-        let given = |over| match over {
-            Over::Atoms(atoms) => Given::Steps(steps(&gathered(atoms, most))),
-            Over::Rule(law, rule) => Given::Rule(law, rule),
+        let stepped = |over| match over {
+            Over::Values(atoms) => Over::Values(steps(&gathered(atoms, most))),
+            Over::Rule(law, rule) => Over::Rule(law, rule),
         };
-        Self { factor, over: over.into_iter().map(given).collect(), places, width }
+        Self { factor, over: over.into_iter().map(stepped).collect(), places, width }
     }
 
     /// Weights, whose sum is 1, and the values of all scalars of each.
@@ -112,18 +107,18 @@ impl<'a> Steps<'a> {
             scores.pop();
         };
         match over {
-            Given::Rule(law, rule) => {
+            Over::Rule(law, rule) => {
                 for (own, z) in *rule {
                     go_on(weight * own, *z, law.at_score(mean + deviation * z));
                 }
             }
-            Given::Steps(steps) => {
+            Over::Values(steps) => {
                 let is_last = at + 1 == self.over.len();
                 for Step { from, to, value } in steps {
                     let [from, to] = [from, to].map(|z| (z - mean) / deviation);
                     if is_last {
                         // Nothing more hangs on the score.
-                        let share = between(from, to);
+                        let share = share(from, to);
                         if share > 0.0 {
                             go_on(weight * share, 0.0, *value);
                         }
@@ -146,15 +141,6 @@ impl<'a> Steps<'a> {
                 }
             }
         }
-    }
-}
-
-/// The probability of a standard normal score between two, from the end that is nearer.
-fn between(from: f64, to: f64) -> f64 {
-    if from > 0.0 {
-        normal::above(from) - normal::above(to)
-    } else {
-        normal::below(to) - normal::below(from)
     }
 }
 

@@ -35,13 +35,8 @@ impl Region {
         };
         let (low, high) = (end(f64::min), end(f64::max));
         let centre = (low + high) * 0.5;
-        // The ends as they are rounded may lie within the outermost points.
-        let half = Vector3::from_fn(|i, _| {
-            let half = (high[i] - centre[i]).max(centre[i] - low[i]);
-            let holds = centre[i] + half >= high[i] && centre[i] - half <= low[i];
-            if holds { half } else { half.next_up() }
-        });
-        Self::solid_box(centre, half)
+        // The middle is rounded, and the farther end decides.
+        Self::solid_box(centre, (high - centre).sup(&(centre - low)))
     }
 
     /// The smallest ellipsoid that holds points, m, to 1e-4 of its volume (Khachiyan 1996, doi:10.1287/moor.21.2.307), grown
@@ -146,6 +141,25 @@ mod tests {
                 prop_assert!(held(region, 0.9), "{region:?}");
             }
             prop_assert!(!held(&ellipsoid, 1.03));
+        }
+    }
+
+    proptest! {
+        /// Each point that a box is about is in it, whatever the rounding of its middle: a point mass there is possible.
+        #[test]
+        fn a_box_has_its_points(
+            points in prop::collection::vec(prop::array::uniform3(-99_i32..99), 4..8),
+            exponent in -6..6_i32,
+            far in -1e3..1e3_f64,
+        ) {
+            let points: Vec<[f64; 3]> =
+                points.iter().map(|p| p.map(|x| f64::from(x) * 10_f64.powi(exponent) + far)).collect();
+            if let Ok(region) = Region::box_about(&points) {
+                for point in points {
+                    let body = crate::MassProperties::point(1.0, Vector3::from(point)).unwrap();
+                    prop_assert_eq!(region.containment(&body), Containment::Possible, "{:?}", point);
+                }
+            }
         }
     }
 

@@ -53,8 +53,6 @@ pub struct ScoreSearch {
 impl ScoreSearch {
     /// It takes no more levels where there is one way to the event.
     pub const LEVELS_OF_ONE_WAY: usize = (INDEPENDENT + 1) * WaySearch::MOST_LEVELS;
-    /// It gives up after so many levels.
-    pub const MOST_LEVELS: usize = MOST_SEARCHES * WaySearch::MOST_LEVELS;
 
     /// With so many scores, and runs of a level.
     ///
@@ -97,7 +95,7 @@ impl ScoreSearch {
 
     /// How many runs are wanted next; none if it is done.
     pub fn asks(&self) -> usize {
-        self.now.as_ref().map_or(0, WaySearch::asks)
+        self.now.as_ref().map_or(0, |now| now.per_level)
     }
 
     /// Takes the runs that were asked for: the scores of each, and how far it is beyond the limit. The event is an excess of 0 or
@@ -114,7 +112,7 @@ impl ScoreSearch {
         now.tell(runs)?;
         self.evaluations += runs.len() as u64;
         self.without_excess += runs.iter().filter(|run| run.1.is_nan()).count() as u64;
-        if now.is_done() {
+        if now.ended().is_some() {
             self.done.extend(self.now.take());
             let next = self.plan.clone();
             if self.done.len() < INDEPENDENT {

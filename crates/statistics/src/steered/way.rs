@@ -39,7 +39,8 @@ const NEGLIGIBLE: f64 = 0.02;
 /// estimate scatter. Without an earlier search each run counts 1.
 #[derive(Clone, Debug)]
 pub(super) struct WaySearch {
-    per_level: usize,
+    /// How many runs a level has.
+    pub(super) per_level: usize,
     least: f64,
     known: Option<Known>,
     /// The law of each score from which the search starts.
@@ -170,11 +171,6 @@ impl WaySearch {
         Ok(self)
     }
 
-    /// How many runs are wanted next; none if it is done.
-    pub(super) fn asks(&self) -> usize {
-        if self.is_done() { 0 } else { self.per_level }
-    }
-
     /// For what these searches have not found.
     pub(super) fn beyond(mut self, searches: &[Self]) -> Self {
         let reached: Vec<&Self> = searches.iter().filter(|search| search.reached()).collect();
@@ -200,9 +196,9 @@ impl WaySearch {
         ScoreLaw::together(laws, OWN)
     }
 
-    /// Takes the runs that were asked for: the scores of each, and how far it is beyond the limit.
+    /// Takes the runs of a level, if it is not done: the scores of each, and how far it is beyond the limit.
     pub(super) fn tell(&mut self, runs: &[(Vec<f64>, f64)]) -> Result<(), StatisticsError> {
-        crate::rank_correlation::same_length(self.asks(), runs.len())?;
+        crate::rank_correlation::same_length(self.per_level, runs.len())?;
         let known = self.known.as_ref().map(|known| known.law.log_parts());
         let own = self.law.log_parts();
         let told = runs.iter().map(|(scores, excess)| {
@@ -210,9 +206,6 @@ impl WaySearch {
             Told::new(scores, *excess, &own, known.as_ref())
         });
         let told = told.collect::<Result<Vec<_>, _>>()?;
-        if self.is_done() {
-            return Ok(());
-        }
         self.levels += 1;
         let n = self.per_level as f64;
         let Some(level) = self.next_level(&told) else {
@@ -268,11 +261,6 @@ impl WaySearch {
             self.law = ScoreLaw::mixed(self.law.scores(), OWN, others);
         }
         Ok(())
-    }
-
-    /// Whether nothing more is asked for.
-    pub(super) fn is_done(&self) -> bool {
-        self.ended().is_some()
     }
 
     /// How it ended.
