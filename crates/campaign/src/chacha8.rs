@@ -35,8 +35,8 @@ impl Block {
     }
 
     /// The block that comes as many later in the stream.
-    pub(crate) fn later(self, blocks: usize) -> Self {
-        Self { number: self.number.wrapping_add(blocks as u64), ..self }
+    pub(crate) fn later(self, blocks: u64) -> Self {
+        Self { number: self.number.wrapping_add(blocks), ..self }
     }
 
     /// How many come before it in the stream.
@@ -81,7 +81,7 @@ impl Batch {
     /// A block and those that follow it in its stream, up to a number of them.
     pub(crate) fn from(first: Block, places: usize) -> Self {
         let mut states = first.state().map(|word| [word; BATCH]);
-        let number = |place| first.later(place).number;
+        let number = |place| first.later(place as u64).number;
         states[12] = std::array::from_fn(|place| number(place) as u32);
         states[13] = std::array::from_fn(|place| (number(place) >> 32) as u32);
         Self::mixed(states, places.min(BATCH))
@@ -171,7 +171,7 @@ mod tests {
     /// Every vector unit that this machine has, and none.
     #[test]
     fn vectors_of_any_length_make_the_same_words() {
-        let blocks = |i: usize| Block::new(&[i as u8; 32]).of_stream(1 << (4 * i)).later(i);
+        let blocks = |i: usize| Block::new(&[i as u8; 32]).of_stream(1 << (4 * i)).later(i as u64);
         let states: [[u32; BATCH]; WORDS] =
             std::array::from_fn(|i| std::array::from_fn(|place| blocks(place).state()[i]));
         let expected: [_; BATCH] = std::array::from_fn(|place| blocks(place).words());

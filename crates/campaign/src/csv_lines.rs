@@ -267,6 +267,12 @@ impl<R: Read> Read for CsvLines<R> {
                 break;
             }
         }
+        // Nobody asks again after the end.
+        if self.given == self.ready.len()
+            && let Some(refused) = self.refused.take()
+        {
+            return Err(refused);
+        }
         let given = (&self.ready[self.given..]).read(buffer)?;
         self.given += given;
         Ok(given)
@@ -374,10 +380,19 @@ mod tests {
 
         /// A line that may be a comment or a row is neither, wherever it stands.
         #[test]
-        fn what_may_be_a_row_is_refused(columns in 1..4_usize, before in 0..30_usize, id in "#[0-9a-zA-Z]{1,8}") {
+        fn what_may_be_a_row_is_refused(
+            columns in 1..4_usize,
+            (before, after) in (0..30_usize, 0..3_usize),
+            ended: bool,
+            at_once in 1..20_usize,
+            id in "#[0-9a-zA-Z]{1,8}",
+        ) {
             let row = |first: &str| format!("{first}{}\n", ",1".repeat(columns - 1));
-            let text = row("x") + &row("0").repeat(before) + &row(&id);
-            let refused = read(&text, columns, 7).unwrap_err().to_string();
+            let mut text = row("x") + &row("0").repeat(before) + &row(&id) + &row("0").repeat(after);
+            if !ended {
+                text.pop();
+            }
+            let refused = read(&text, columns, at_once).unwrap_err().to_string();
             prop_assert!(refused.starts_with(&format!("line {}: it begins with {id:?}", before + 2)), "{}", refused);
             let quoted = row("x") + &row("0").repeat(before) + &row(&format!("\"{id}\""));
             prop_assert_eq!(read(&quoted, columns, 7).unwrap().1.len(), before + 1);

@@ -60,10 +60,10 @@ impl StreamRng {
             if n * BLOCKS < FEW {
                 return first.iter().for_each(|block| with(&mut Self::new(*block)));
             }
-            let blocks = first.iter().flat_map(|block| (0..BLOCKS).map(|i| block.later(i)));
+            let blocks = first.iter().flat_map(|block| (0..BLOCKS).map(|i| block.later(i as u64)));
             let made = Batch::of_each(blocks);
             for (i, block) in first.iter().enumerate() {
-                let mut opened = Self::new(block.later(BLOCKS));
+                let mut opened = Self::new(block.later(BLOCKS as u64));
                 opened.used -= BLOCKS * WORDS;
                 let (held, _) = opened.held[opened.used..].as_chunks_mut();
                 for (held, place) in held.iter_mut().zip(BLOCKS * i..) {
@@ -145,7 +145,7 @@ impl TryRng for StreamRng {
                     *four = word.to_le_bytes();
                 }
             }
-            self.next = self.next.later(made);
+            self.next = self.next.later(made as u64);
             rest = later;
         }
         self.fill(rest);
@@ -201,7 +201,7 @@ mod tests {
             let mut theirs = ChaCha8Rng::from_seed(seed);
             theirs.set_stream(stream);
             theirs.set_word_pos(u128::from(block) * WORDS as u128);
-            let from = Block::new(&seed).of_stream(stream).later(block as usize);
+            let from = Block::new(&seed).of_stream(stream).later(block);
             let expected = taken(&mut theirs, &takes);
             prop_assert_eq!(&taken(&mut StreamRng::new(from), &takes), &expected);
             let mut n = 0;

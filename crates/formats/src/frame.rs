@@ -103,16 +103,30 @@ fn prefix(node: Node<'_, '_>) -> String {
 
 /// How the angles of an MJCF file are meant.
 pub(crate) fn angles(tree: &Tree<'_>) -> Angles {
-    let said = |name| tree.said("compiler", name);
-    // A file that includes others may have its compiler there, and one that is included has it elsewhere.
-    let is_whole = tree.root().name() == "mujoco" && tree.all("include").next().is_none();
-    let unit = match said("angle") {
+    let unit = compiled(tree, "angle").and_then(|said| match said {
         Some("radian") => Ok(1.0),
-        Some("degree") => Ok(1_f64.to_radians()),
+        Some("degree") | None => Ok(1_f64.to_radians()),
         Some(word) => Err(LinkProblem::AngleUnit { word: shortened(word) }),
-        None => is_whole.then_some(1_f64.to_radians()).ok_or(LinkProblem::Angles),
-    };
-    Angles { unit, sequence: said("eulerseq").unwrap_or("xyz").to_owned() }
+    });
+    let sequence = compiled(tree, "eulerseq").map(|said| said.unwrap_or("xyz").to_owned());
+    Angles { unit, sequence }
+}
+
+/// What the compiler is told by an attribute, if anything. Of several it believes the last, and a file that is included may have one
+/// that counts from there on; what is included itself has its compiler elsewhere.
+fn compiled<'t>(tree: &'t Tree<'_>, name: &str) -> Result<Option<&'t str>, LinkProblem> {
+    let root = tree.root();
+    let mut said = if root.name() == "mujoco" { Ok(None) } else { Err(LinkProblem::Angles) };
+    for node in root.children() {
+        if node.name() == "include" {
+            said = Err(LinkProblem::Angles);
+        } else if node.name() == "compiler"
+            && let Some(told) = node.attribute(name)
+        {
+            said = Ok(Some(told));
+        }
+    }
+    said
 }
 
 /// The frame of an inertia in a file of this format.

@@ -12,8 +12,8 @@ pub(crate) const ATTRIBUTES: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes"
 pub(crate) struct Angles {
     /// Radians of one unit, or why that is not known.
     pub(crate) unit: Result<f64, LinkProblem>,
-    /// Axes of `euler`, in small letters where they turn with the body.
-    pub(crate) sequence: String,
+    /// Axes of `euler`, in small letters where they turn with the body, or why they are not known.
+    pub(crate) sequence: Result<String, LinkProblem>,
 }
 
 /// The rotation by an angle about an axis of unit length.
@@ -60,7 +60,7 @@ pub(crate) fn of_mjcf(
             let unit = unit()?;
             axis(&numbers[..3]).map(|axis| about(axis, numbers[3] * unit))
         }
-        "euler" => of_euler(&list(3)?, unit()?, &angles.sequence),
+        "euler" => of_euler(&list(3)?, unit()?, angles.sequence.as_ref().map_err(Clone::clone)?),
         "xyaxes" => {
             let numbers = list(6)?;
             axis(&numbers[..3]).and_then(|x| {

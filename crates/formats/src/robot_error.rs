@@ -26,10 +26,10 @@ pub enum LinkProblem {
         /// The other frame.
         frame: String,
     },
-    /// Another file says whether angles are degrees.
+    /// Another file may say whether angles are degrees, and about which axes they turn.
     #[error(
-        "its axes are given by angles, and whether these are degrees is said in another file: a `quat` \
-         needs no unit"
+        "its axes are given by angles, and whether these are degrees, and about which axes they turn, may be said in another file, which \
+         is not read: a `quat` needs neither, nor does a file whose <compiler> with angle and eulerseq comes after its last <include>"
     )]
     Angles,
     /// The compiler says of angles what is neither degrees nor radians.

@@ -505,6 +505,39 @@ fn links_that_cannot_be_told_say_why() {
         problem("a.xml", &mjcf("<include file='b.xml'/>", "euler='1 0 0' diaginertia='1 1 1'")),
         LinkProblem::Angles
     );
+    // What is included after a compiler may have another one.
+    let degrees = "<compiler angle='degree' eulerseq='zyx'/>";
+    let include = "<include file='b.xml'/>";
+    let radians = "<compiler angle='radian'/>";
+    for before in [
+        format!("{degrees}{include}"),
+        format!("{include}{radians}"),
+        format!("{radians}{include}<compiler eulerseq='xyz'/>"),
+    ] {
+        assert_eq!(
+            problem("a.xml", &mjcf(&before, "euler='1 0 0' diaginertia='1 1 1'")),
+            LinkProblem::Angles
+        );
+    }
+    assert_eq!(
+        problem(
+            "a.xml",
+            &mjcf(&format!("{degrees}{include}"), "axisangle='1 0 0 1' diaginertia='1 1 1'")
+        ),
+        LinkProblem::Angles
+    );
+    for (before, attributes) in [
+        (format!("{include}{degrees}"), "euler='0 0 90'"),
+        (format!("{include}{degrees}{radians}"), "euler='0 0 1.57'"),
+        (format!("{degrees}{include}{radians}"), "axisangle='1 0 0 1.57'"),
+        (format!("{degrees}{include}"), "quat='1 1 0 0'"),
+        (format!("{degrees}{include}"), "zaxis='0 1 0'"),
+    ] {
+        let text = mjcf(&before, &format!("{attributes} diaginertia='1 2 2.5'"));
+        let file = RobotFile::parse(Path::new("a.xml"), text.into_bytes()).unwrap();
+        let turned = file.links()[0].numbers().unwrap().inertia().entries();
+        assert!((turned[1] - 2.5).abs() < 1e-3 && (turned[2] - 2.0).abs() < 1e-3, "{turned:?}");
+    }
     assert_eq!(
         problem("a.xml", &mjcf("", "quat='0 0 0 0' diaginertia='1 1 1'")),
         LinkProblem::Orientation { field: "quat" }

@@ -81,10 +81,12 @@ pub(super) fn scan_csv(
     let mut row = csv::StringRecord::new();
     let mut last = None;
     loop {
-        let read = reader.read_record(&mut row).map_err(|error| broken(path, &error));
-        if let Ok(false) = read {
-            break;
-        }
+        let read = match reader.read_record(&mut row) {
+            Ok(false) => break,
+            // The text is refused or cannot be read: no row is to blame.
+            Err(error) if error.is_io_error() => return Err(broken(path, &error)),
+            read => read.map_err(|error| broken(path, &error)),
+        };
         let line = row.position().map_or(0, csv::Position::line);
         last = Some((line, reader.position().byte()));
         let taken = read.and_then(|_| {

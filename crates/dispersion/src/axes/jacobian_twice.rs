@@ -220,7 +220,7 @@ mod tests {
         let total: f64 = weighted.iter().map(|w| w.0).sum();
         for k in 0..6 {
             let a = direct.iter().map(|x| x[k]).sum::<f64>() / N as f64;
-            let va = direct.iter().map(|x| (x[k] - a).powi(2)).sum::<f64>() / (N * N) as f64;
+            let va = direct.iter().map(|x| (x[k] - a).powi(2)).sum::<f64>() / (N as f64).powi(2);
             let b = weighted.iter().map(|(w, x)| w * x[k]).sum::<f64>() / total;
             let vb = weighted.iter().map(|(w, x)| (w * (x[k] - b)).powi(2)).sum::<f64>()
                 / (total * total);
@@ -296,7 +296,11 @@ mod tests {
                     .collect();
             let moments = |of: &[f64]| {
                 let mean = of.iter().sum::<f64>() / N as f64;
-                (mean, (of.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (N * N) as f64).sqrt())
+                (
+                    mean,
+                    (of.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (N as f64).powi(2))
+                        .sqrt(),
+                )
             };
             let ((drawn, error), found) = (moments(&weights), libm::exp(twice.ln_mean()));
             assert!((found - drawn).abs() < 4.0 * error, "{seed}: {found} {drawn} ± {error}");

@@ -132,10 +132,10 @@ impl Task {
                     Asked::Stated(deviations) => {
                         let first = if both && e < 3 { MOMENTS_FIRST } else { 1.0 };
                         let stated = deviations[e - first_entry].powi(2);
-                        // Axes and mass are stated, too: where they alone are more, there is no less, and the
-                        // inertia follows the mass no less for it.
-                        let given = with(most_by_mass, e, (found[e] - by_roots[e]).max(0.0));
-                        if e < 3 && axes_are_as_stated && given > stated {
+                        // Axes are stated, too: where they alone are more, there is no less, and the inertia follows the
+                        // mass no less for it.
+                        if e < 3 && axes_are_as_stated && by_axes[e] > stated {
+                            let given = with(most_by_mass, e, (found[e] - by_roots[e]).max(0.0));
                             let wanted = if stated > 0.0 { given } else { stated };
                             (wanted, with(most_by_mass, e, found[e]), first)
                         } else {
