@@ -7,7 +7,7 @@ use std::{
     process::{Command, Output},
 };
 
-use crate::scratch::files;
+use crate::scratch::{Scratch, files};
 
 fn gyradius(arguments: &[&str], folder: &Path) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_gyradius"));
@@ -160,6 +160,50 @@ fn what_was_changed_is_not_replaced() {
     assert!(gyradius(&["report", name], scratch.path()).status.success());
     let arguments = ["study", "--runs", "9", "--out", name, "--force"];
     assert!(gyradius(&arguments, scratch.path()).status.success());
+}
+
+/// Of what is lost or changed, the truth is said: runs are missing, a file was changed, a file is no file any more.
+#[test]
+fn what_is_lost_or_changed_is_named() {
+    let scratch = Scratch::new();
+    let study = |name| scratch.done(&["study", "--runs", "20", "--out", name, "-q"], 0);
+    study("lost");
+    fs::remove_dir_all(scratch.path("lost/runs")).unwrap();
+    assert!(scratch.done(&["status", "lost"], 1).contains("20 of proposed (0 to 19)"));
+    study("lost");
+    assert!(scratch.done(&["status", "lost"], 0).contains("put together"));
+    fs::remove_file(scratch.path("lost/.gyradius/study.json")).unwrap();
+    let said = scratch.done(&["status", "lost"], 2);
+    assert!(
+        said.contains(".gyradius/study.json, which tells what its files are, is not there"),
+        "{said}"
+    );
+
+    study("changed");
+    let summary = scratch.path("changed/summary.json");
+    let mut text = fs::read_to_string(&summary).unwrap();
+    text.push('\n');
+    fs::write(&summary, text).unwrap();
+    let said = scratch.done(&["report", "changed"], 2);
+    assert!(said.contains("summary.json in it was changed after it was written"), "{said}");
+}
+
+/// What stands in the place of a block and is no file is not read: a link is not followed, and a pipe not waited for.
+#[cfg(unix)]
+#[test]
+fn runs_are_not_held_against_links_and_pipes() {
+    let scratch = Scratch::new();
+    scratch.done(&["study", "--runs", "20", "--out", "linked", "-q"], 0);
+    let block =
+        fs::read_dir(scratch.path("linked/runs/naive")).unwrap().next().unwrap().unwrap().path();
+    let moved = scratch.path("moved.parquet");
+    fs::rename(&block, &moved).unwrap();
+    std::os::unix::fs::symlink(&moved, &block).unwrap();
+    let replay = ["replay", "linked", "--model", "naive", "--run", "3"];
+    assert!(scratch.done(&replay, 2).contains("it is a link, a pipe or a device"));
+    fs::remove_file(&block).unwrap();
+    assert!(Command::new("mkfifo").arg(&block).status().unwrap().success());
+    assert!(scratch.done(&replay, 2).contains("it is a link, a pipe or a device"));
 }
 
 #[test]

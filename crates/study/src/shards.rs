@@ -1,8 +1,8 @@
 //! A share of a study's runs, and what of a study is there: for studies that many processes do.
 
 use gyradius_campaign::{
-    Block, Difference, Doing, Forecast, HIDDEN, MANIFEST, Plan, Progress, Shard, Shared, Until,
-    begun, missing_runs, run_missing, threads, told,
+    Block, Difference, Doing, Forecast, Plan, Progress, Shard, Shared, Until, begun, missing_runs,
+    run_missing, threads, told, unknown,
 };
 use serde::Serialize;
 use std::{ops::Range, path::Path};
@@ -168,16 +168,11 @@ impl Status {
     /// Of the study of a scenario in a folder, as its files tell.
     pub(crate) fn of<C: Subject>(scenario: &C, folder: &Path) -> Result<Self, StudyError> {
         let blocks = told(folder, &contents(scenario), &identity(scenario))?;
-        if blocks.is_empty() && begun(folder).is_none() {
-            let problem = if !folder.join(MANIFEST).exists() {
-                "it holds no runs of a study".to_owned()
-            } else if !folder.join(HIDDEN).exists() {
-                format!(
-                    "it is a copy without the folder {HIDDEN}, which tells what its files are: copy that too"
-                )
-            } else {
-                format!("{MANIFEST} is not as it was written, so that nobody knows its runs")
-            };
+        // Of a complete study whose blocks are lost, all runs are missing.
+        if blocks.is_empty()
+            && begun(folder).is_none()
+            && let Some(problem) = unknown(folder, &contents(scenario), &identity(scenario))?
+        {
             return Err(StudyError::Absent { path: folder.to_owned(), problem });
         }
         let (mut models, mut missing) = (Vec::new(), Vec::new());

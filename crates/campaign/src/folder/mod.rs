@@ -41,7 +41,7 @@ pub use name::HIDDEN;
 use name::{Found, Name, look};
 use record::Record;
 pub use shared::Shared;
-pub use told::{begun, missing_runs, told};
+pub use told::{begun, missing_runs, told, unknown};
 
 use crate::identity::Difference;
 
@@ -350,13 +350,17 @@ fn check(
     let files = files.iter().map(|name| Name::new(name)).collect::<Result<Vec<_>, _>>()?;
     let mark = Name::new(contents.mark)?;
     // Read only if it is the file that was written, and not a pipe, say.
-    let known = unobstructed(place, record, [&mark]).is_ok() && record.has(&mark);
+    let in_the_way = unobstructed(place, record, [&mark]);
+    let known = in_the_way.is_ok() && record.has(&mark);
     let text = || fs::read_to_string(mark.below(place));
     let same = known && text().is_ok_and(|text| (contents.same)(&text));
     // Of a campaign that is not complete, the mark is not there yet; other files may stand beside it.
     let begun = if known { None } else { begun(place) };
     let goes_on = begun.as_deref().is_some_and(|text| (contents.same)(text));
     if occupied && !same && !goes_on && !force {
+        if let Err(changed @ Problem::Changed { .. }) = in_the_way {
+            return Err(changed);
+        }
         let difference = if known { text().ok() } else { begun };
         let difference = difference.and_then(|text| (contents.differs)(&text));
         return Err(match difference {

@@ -12,7 +12,7 @@ use super::{
     area::Area,
     hidden::Hidden,
     manifest::{Block, MANIFEST, Manifest},
-    name::{Found, Name, look},
+    name::{Found, HIDDEN, Name, look},
     record::Record,
 };
 use crate::{identity::Identity, kept::Kept};
@@ -88,6 +88,35 @@ pub fn told(
     blocks.sort_by(|a, b| a.model.cmp(&b.model).then_with(|| order(a).cmp(&order(b))));
     blocks.dedup_by(|a, b| (&a.model, a.first_run) == (&b.model, b.first_run));
     Ok(blocks)
+}
+
+/// Why nothing is known of the complete campaign of this identity in a folder, if nothing is.
+///
+/// # Errors
+/// The file that tells what was written there cannot be read.
+pub fn unknown(
+    place: &Path,
+    contents: &Contents<'_>,
+    identity: &Identity,
+) -> Result<Option<String>, FolderError> {
+    let what = contents.what;
+    if !place.join(MANIFEST).exists() {
+        return Ok(Some(format!("it holds no runs of a {what}")));
+    }
+    if !place.join(HIDDEN).exists() {
+        return Ok(Some(format!(
+            "it is a copy without the folder {HIDDEN}, which tells what its files are: copy that too"
+        )));
+    }
+    let found = Hidden::record_of(place, what);
+    let (record, hash) =
+        found.map_err(|problem| FolderError { path: place.to_owned(), problem })?;
+    if hash.is_none() {
+        let name = Hidden::record_name(what);
+        return Ok(Some(format!("{name}, which tells what its files are, is not there")));
+    }
+    let problem = || format!("{MANIFEST} is not as it was written, so that nobody knows its runs");
+    Ok(manifest(place, &record, identity).is_none().then(problem))
 }
 
 /// The runs from 0 to below a number that are in none of these ranges, which are in order: in parts that no block of so

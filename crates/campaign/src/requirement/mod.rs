@@ -250,9 +250,9 @@ impl Bound {
     #[must_use]
     pub fn excess(self, x: f64) -> f64 {
         match self {
-            Self::AtMost(limit) => x - limit,
-            Self::AtLeast(limit) => limit - x,
-            Self::Between(lower, upper) => (lower - x).max(x - upper),
+            Self::AtMost(limit) => difference(x, limit),
+            Self::AtLeast(limit) => difference(limit, x),
+            Self::Between(lower, upper) => difference(lower, x).max(difference(x, upper)),
         }
     }
 
@@ -260,9 +260,11 @@ impl Bound {
     #[must_use]
     pub fn wider(self, by: f64) -> Self {
         match self {
-            Self::AtMost(limit) => Self::AtMost(limit + by),
-            Self::AtLeast(limit) => Self::AtLeast(limit - by),
-            Self::Between(lower, upper) => Self::Between(lower - by, upper + by),
+            Self::AtMost(limit) => Self::AtMost(difference(limit, -by)),
+            Self::AtLeast(limit) => Self::AtLeast(difference(limit, by)),
+            Self::Between(lower, upper) => {
+                Self::Between(difference(lower, by), difference(upper, -by))
+            }
         }
     }
 
@@ -285,6 +287,12 @@ impl Bound {
         }
         Err(RequirementError::Limits { lower: limits[0], upper: limits[1] })
     }
+}
+
+/// A number less another one; of finite numbers the largest or least that is finite where the difference is beyond.
+fn difference(a: f64, b: f64) -> f64 {
+    let difference = a - b;
+    if a.is_finite() && b.is_finite() { difference.clamp(-f64::MAX, f64::MAX) } else { difference }
 }
 
 /// In words, after the quantity.

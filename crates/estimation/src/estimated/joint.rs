@@ -60,12 +60,20 @@ pub(super) struct Joint {
 ///
 /// The covariance of the ten is D S Dᵀ to first order, linear in the covariance S of scalars and rotations: a convex problem. What the
 /// law's own moments differ from that is added to what is sought, and so on.
-pub(super) fn matched(target: &TenEstimate, start: &MassProperties) -> Option<Joint> {
+///
+/// First order is that of a body with the same axes, whose moments may differ more: across equal moments rotations would do nothing.
+pub(super) fn matched(
+    target: &TenEstimate,
+    start: &MassProperties,
+    first_order: &MassProperties,
+) -> Option<Joint> {
     let form = target.form();
     let Means { mean, axes } = Means::of(start)?;
+    let apart = Means::of(first_order)?.mean - mean;
     let units = units(target);
     let mut sought = *target.covariance();
-    let mut joint = Joint { mean, axes, spread: nearest(form, &mean, &axes, &sought, &units)? };
+    let spread = nearest(form, &(mean + apart), &axes, &sought, &units)?;
+    let mut joint = Joint { mean, axes, spread };
     let mut best: Option<(f64, Joint)> = None;
     let mut vain = 0;
     for _ in 0..STEPS {
@@ -85,12 +93,13 @@ pub(super) fn matched(target: &TenEstimate, start: &MassProperties) -> Option<Jo
         if off < NOTHING {
             break;
         }
-        let derivative = derivative(form, &joint.mean, &joint.axes)?;
+        let derivative = derivative(form, &(joint.mean + apart), &joint.axes)?;
         let first_order = derivative * joint.spread * derivative.transpose();
         let law = target.covariance() - gaps.covariance;
         sought = target.covariance() + first_order - law;
         let Some((mean, axes)) = joint.moved(&(inverse(&derivative)? * gaps.mean)) else { break };
-        joint = Joint { mean, axes, spread: nearest(form, &mean, &axes, &sought, &units)? };
+        let spread = nearest(form, &(mean + apart), &axes, &sought, &units)?;
+        joint = Joint { mean, axes, spread };
     }
     best.map(|best| best.1)
 }

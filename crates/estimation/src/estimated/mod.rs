@@ -10,6 +10,7 @@ mod tests;
 
 use gyradius_dispersion::{LogCholeskyTen, MassPropertiesLaw, MassPropertiesModel, TenParameters};
 use gyradius_inertia::{Inertia, LogCholesky, MassProperties};
+use nalgebra::Matrix3;
 use rand::{SeedableRng, rngs::Xoshiro256PlusPlus};
 use rand_distr::Distribution;
 
@@ -24,8 +25,14 @@ pub use ten_estimate::{TenEstimate, TenEstimateError, TenForm};
 
 /// Draws of which the joint law is fitted where its moments cannot be solved for.
 const DRAWS: usize = 4000;
+/// Moments of so many draws are about as far off by chance.
+const DRAWN: f64 = 0.1;
 /// What is farther off may have a better start: a law without any spread is at most so far from a mean that it has.
 const POOR: f64 = 1.5;
+/// What is farther off may be nearer where first order is taken of moments that are set apart.
+const ROUGH: f64 = 1e-3;
+/// A second moment that is set apart from others keeps at least this share.
+const LEAST_APART: f64 = 0.1;
 /// What is farther off, in deviations, is no law of the estimate.
 const FAR: f64 = 1e3;
 /// What a second moment and the mass are at least, as shares of their deviations, where searches for a law begin.
@@ -100,31 +107,37 @@ impl EstimatedBody {
         let start = starts[0];
         let log = log_cholesky::matched(&unitless, &starts);
         let exists = log.as_ref().and_then(|law| moments(law, unitless.form()));
-        let own = joint::matched(&at, &start);
+        let own = joint::matched(&at, &start, &start);
         let wide = own.as_ref().is_none_or(Joint::is_wide);
         let off = own.as_ref().and_then(|own| own.off(&unitless)).unwrap_or(f64::INFINITY);
         // Where the moments are far from those of any law of the family, those of a law that exists may be nearer, or a narrow law.
         let other = exists.filter(|_| moved > 0.0 || wide || off > POOR).and_then(|moments| {
             let target = at.with(moments.mean(), moments.covariance());
-            joint::matched(&target, &unitless.form().body(target.mean()).unwrap_or(start))
+            let start = unitless.form().body(target.mean()).unwrap_or(start);
+            joint::matched(&target, &start, &start)
         });
         let narrow = (off > POOR).then(|| joint::narrow(&unitless, &body)).flatten();
         let mut own: Vec<Joint> = [own, other, narrow].into_iter().flatten().collect();
+        let apart = if off > ROUGH { apart(&at, &start) } else { None };
+        own.extend(apart.and_then(|apart| joint::matched(&at, &start, &apart)));
         if off > POOR {
             let by_off = own.into_iter().filter_map(|joint| Some((joint.off(&unitless)?, joint)));
             let nearest = by_off.min_by(|a, b| a.0.total_cmp(&b.0));
             own = nearest.and_then(|(_, joint)| joint.refined(&unitless)).into_iter().collect();
         }
+        let nearest = |laws: Vec<(MassPropertiesLaw, EstimateDistance)>| {
+            laws.into_iter().min_by(|a, b| a.1.total().total_cmp(&b.1.total()))
+        };
         let own = own.into_iter().filter_map(|joint| {
             let distance = distance_of(&unitless, &joint.law([1.0, 1.0])?)?;
             Some((joint.law(units)?, distance))
         });
+        let own = nearest(own.collect());
         let si = log.as_ref().and_then(|law| in_units(law, units));
-        let fitted = if wide { si.as_ref().and_then(|law| fitted(law, estimate)) } else { None };
-        let nearer = |a: &(MassPropertiesLaw, EstimateDistance), b: &(_, EstimateDistance)| {
-            a.1.total().total_cmp(&b.1.total())
-        };
-        let joint = own.chain(fitted).min_by(|a, b| nearer(a, b));
+        let is_near = own.as_ref().is_some_and(|own| own.1.total() < DRAWN);
+        let fitted =
+            if wide && !is_near { si.as_ref().and_then(|law| fitted(law, estimate)) } else { None };
+        let joint = nearest(own.into_iter().chain(fitted).collect());
         let log_cholesky: Option<(LogCholeskyTen, EstimateDistance)> = log.and_then(|law| {
             let distance = distance_of(&unitless, &law)?;
             Some((si?, distance))
@@ -177,26 +190,64 @@ fn distance_of(estimate: &TenEstimate, law: &dyn MassPropertiesModel) -> Option<
 /// The body with second moments, and the mass, that are no smaller than a share of their deviations; none where one is zero and does
 /// not vary.
 fn inside(estimate: &TenEstimate, body: &MassProperties, share: f64) -> Option<MassProperties> {
-    let natural = estimate.to_natural_with_rounding()?;
     let mass = body.mass_kg().max(share * estimate.deviations()[0]);
+    let scatter = scatter(estimate, body)?;
+    let mut moments = body.inertia().second_moments().values();
+    for (k, moment) in moments.iter_mut().enumerate() {
+        *moment = moment.max(share * scatter[(k, k)].max(0.0).sqrt());
+    }
+    with_moments(body, mass, moments)
+}
+
+/// The covariance of the second moments about the principal axes of a body, to first order.
+fn scatter(estimate: &TenEstimate, body: &MassProperties) -> Option<Matrix3<f64>> {
+    let natural = estimate.to_natural_with_rounding()?;
     let second = second_moments_of_inertia();
     let entries = natural.covariance().fixed_view::<6, 6>(4, 4).into_owned();
     let spread = second * entries * second.transpose();
-    let axes = body.inertia().principal_axes().attitude();
-    let rotation = *axes.to_rotation_matrix().matrix();
-    let mut moments = body.inertia().second_moments().values();
-    for (k, moment) in moments.iter_mut().enumerate() {
+    let rotation = *body.inertia().principal_axes().attitude().to_rotation_matrix().matrix();
+    let forms = [0, 1, 2].map(|k| {
         // nᵀ Σ n as a linear form of the six entries.
         let n = rotation.row(k).transpose();
-        let outer = n * n.transpose();
-        let mut form = six(&outer);
+        let mut form = six(&(n * n.transpose()));
         form.iter_mut().skip(3).for_each(|x| *x *= 2.0);
-        let deviation = form.dot(&(spread * form)).max(0.0).sqrt();
-        *moment = moment.max(share * deviation);
-    }
+        form
+    });
+    Some(Matrix3::from_fn(|i, j| forms[i].dot(&(spread * forms[j]))))
+}
+
+/// The body with other second moments about its axes, and another mass.
+fn with_moments(body: &MassProperties, mass: f64, moments: [f64; 3]) -> Option<MassProperties> {
     let moments = gyradius_inertia::SecondMoments::new(moments).ok()?;
+    let axes = body.inertia().principal_axes().attitude();
     let inertia = Inertia::from_second_moments(moments, &axes).ok()?;
     MassProperties::new(mass, body.mass_centre_m(), inertia).ok()
+}
+
+/// The body whose second moments differ by what their difference has as root mean square: rotations across them move products by that, and
+/// across nearly equal ones by next to nothing to first order. None if no moments differ by less than twice what their difference scatters by.
+fn apart(estimate: &TenEstimate, body: &MassProperties) -> Option<MassProperties> {
+    let scatter = scatter(estimate, body)?;
+    let own = body.inertia().second_moments().values();
+    let mut order = [0, 1, 2];
+    order.sort_by(|a, b| own[*a].total_cmp(&own[*b]));
+    let gaps = [0, 1].map(|pair| {
+        let (m, n) = (order[pair], order[pair + 1]);
+        let variance = scatter[(m, m)] + scatter[(n, n)] - 2.0 * scatter[(m, n)];
+        [own[n] - own[m], variance.max(0.0).sqrt()]
+    });
+    if gaps.iter().all(|[gap, deviation]| *gap > 2.0 * deviation) {
+        return None;
+    }
+    let [first, second] = gaps.map(|[gap, deviation]| gap.hypot(deviation) - gap);
+    let mut moments = own;
+    // About the same mean.
+    for (k, by) in
+        order.into_iter().zip([-2.0 * first - second, first - second, first + 2.0 * second])
+    {
+        moments[k] = (own[k] + by / 3.0).max(LEAST_APART * own[k]);
+    }
+    with_moments(body, body.mass_kg(), moments)
 }
 
 /// The joint law fitted to draws of another.

@@ -401,3 +401,35 @@ fn no_other_deviation_is_nearer() {
         }
     }
 }
+
+/// Of balls and bodies of revolution, also where they are round but for rounding or for less than their moments scatter: the products
+/// across equal moments scatter as they do beside them, and not at all to first order.
+#[test]
+fn round_bodies_keep_the_scatter_of_their_products() {
+    let mut rng = ChaCha8Rng::seed_from_u64(31);
+    for case in 0..60 {
+        let axis = case % 3;
+        let mut moments = [1.0; 3];
+        if case >= 6 {
+            moments[axis] = rng.random_range(0.4..1.7);
+        }
+        let moment = rng.random_range(0.01..0.06);
+        let product = moment * rng.random_range(0.1..0.6);
+        let of = |apart: f64| {
+            let mut mean = Ten::zeros();
+            mean[0] = 2.0;
+            mean.fixed_rows_mut::<3>(4).copy_from_slice(&moments);
+            mean[4 + (axis + 1) % 3] += apart;
+            let s = [0.02, 0.01, 0.01, 0.01, moment, moment, moment, product, product, product];
+            let estimate = estimate(TenForm::Natural, mean, &s.into(), &Matrix10::identity());
+            EstimatedBody::new(&estimate).unwrap().joint().unwrap().1
+        };
+        let all = [0.0, 1e-7, 0.3 * moment].map(of);
+        for distance in &all {
+            let percents = distance.deviation_percents().iter().flatten();
+            let worst = percents.fold(0.0, |worst: f64, percent| worst.max(percent.abs()));
+            assert!(worst < 6.0 && distance.total() < 0.1, "{case}: {distance:?}");
+        }
+        assert!((all[0].total() - all[1].total()).abs() < 1e-3, "{case}: {all:?}");
+    }
+}

@@ -6,7 +6,7 @@ use gyradius_campaign::{
 use parquet::errors::ParquetError;
 use std::{
     collections::BTreeSet,
-    fmt, io,
+    fmt, fs, io,
     path::{Path, PathBuf},
 };
 
@@ -119,6 +119,11 @@ struct Comparison<'a> {
 impl Comparison<'_> {
     /// What the table has of the run, if it has the run.
     fn found(&self) -> Result<Option<Vec<(String, Cell<'static>)>>, ReplayError> {
+        if fs::symlink_metadata(self.path).is_ok_and(|found| !found.is_file()) {
+            return Err(
+                self.unreadable("it is a link, a pipe or a device, where the study wrote a file")
+            );
+        }
         let found = read_run(self.path, (self.own.model(), self.own.first()));
         found.map_err(|problem| ReplayError::Table { path: self.path.to_owned(), problem })
     }
