@@ -471,3 +471,28 @@ fn one_run_is_told_as_one() {
         assert!(expected.iter().all(|words| text.contains(words)), "{text}");
     }
 }
+
+/// A judgement of numbers whose distances from the limit are beyond the largest float is told with numbers, and reads back.
+#[test]
+fn the_largest_numbers_are_judged() {
+    let scratch = scratch();
+    let path = scratch.path().join("it.csv");
+    fs::write(&path, "x\n1.7e308\n-1.7e308\n1.7e308\n1\n").unwrap();
+    let table = ForeignTable::open(&path).unwrap();
+    for (bound, failures) in [
+        (Bound::AtMost(-1.7e308), 3),
+        (Bound::AtMost(1.7e308), 0),
+        (Bound::AtLeast(1.7e308), 2),
+        (Bound::Between(-1.7e308, -1e307), 3),
+        (Bound::Between(-1.0, 1.0), 3),
+    ] {
+        let requirement = Requirement::new("it", "x".parse().unwrap(), bound, 0.5, 0.5).unwrap();
+        let judged = Judgement::of_table(&[requirement], &table).unwrap().remove(0);
+        assert_eq!(judged.failures(), failures, "{bound:?}");
+        let told = serde_json::to_string(&judged).unwrap();
+        let worst = serde_json::to_value(&judged).unwrap()["worst"].clone();
+        assert!(worst.as_array().unwrap().iter().all(|run| run["excess"].is_f64()), "{worst}");
+        let read: Judgement = serde_json::from_str(&told).unwrap();
+        assert_eq!(serde_json::to_string(&read).unwrap(), told);
+    }
+}

@@ -162,6 +162,18 @@ fn what_was_changed_is_not_replaced() {
     assert!(gyradius(&arguments, scratch.path()).status.success());
 }
 
+/// The short flags are those of `draw`.
+#[test]
+fn runs_and_folder_have_short_flags() {
+    let scratch = Scratch::new();
+    scratch.done(&["study", "-n", "6", "-o", "short", "-q"], 0);
+    scratch.done(&["study", "--runs", "6", "--out", "long", "-q"], 0);
+    scratch.done(&["report", "short", "-o", "again"], 0);
+    let page = |folder: &str| fs::read(scratch.path(folder).join("report.html")).unwrap();
+    assert_eq!(page("short"), page("long"));
+    assert_eq!(page("short"), page("again"));
+}
+
 /// Of what is lost or changed, the truth is said: runs are missing, a file was changed, a file is no file any more.
 #[test]
 fn what_is_lost_or_changed_is_named() {

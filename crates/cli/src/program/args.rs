@@ -175,7 +175,7 @@ pub(crate) struct ScenarioArgs {
     named: Option<PathBuf>,
 
     /// Runs of each model [default: as in the scenario]
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole)]
+    #[arg(short = 'n', long, value_name = "N", allow_negative_numbers = true, value_parser = whole)]
     pub(crate) runs: Option<u64>,
 
     /// Vehicles, in the place of runs, of a scenario with vehicles and flights [default: as in the scenario]
@@ -200,7 +200,7 @@ pub(crate) struct StudyArgs {
     pub(crate) scenario: ScenarioArgs,
 
     /// Folder to write [default: target/study/<scenario name>]
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 
     /// Number of threads [default: one for each core]
@@ -276,7 +276,7 @@ pub(crate) struct ReportArgs {
     pub(crate) study: Option<PathBuf>,
 
     /// Folder to write [default: that of the study]
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 
     /// Replace another report in the folder given with --out
@@ -452,7 +452,7 @@ pub(crate) struct ReplayArgs {
     pub(crate) coast: f64,
 
     /// Folder to write [default: target/replay/<scenario name>/<model>-<run>]
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 
     /// Replace files of another replay in the folder
@@ -693,7 +693,7 @@ pub(crate) struct CompareArgs {
     pub(crate) format: CompareForm,
 
     /// Folder to write compare.html, compare.csv, compare.json and figures to
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 
     /// Replace another comparison in the folder

@@ -9,6 +9,12 @@ use crate::short::Short;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum PartFinding {
+    /// The mass scatters by more than itself, which most often is a slip. Its law is lognormal and very skewed then: of some thousand draws
+    /// the deviation comes out too small.
+    Mass {
+        /// Its standard deviation as a share of the mass.
+        relative: f64,
+    },
     /// The nominal inertia was impossible by no more than rounding, and was moved to the nearest possible one.
     Rounded {
         /// ‖I′ − I‖/‖I‖.
@@ -53,7 +59,10 @@ impl PartFinding {
     pub fn is_impossible(&self) -> bool {
         match self {
             Self::Flat { .. } | Self::Product { .. } => true,
-            Self::Rounded { .. } | Self::Moved { .. } | Self::Correlated { .. } => false,
+            Self::Mass { .. }
+            | Self::Rounded { .. }
+            | Self::Moved { .. }
+            | Self::Correlated { .. } => false,
         }
     }
 }
@@ -61,6 +70,12 @@ impl PartFinding {
 impl fmt::Display for PartFinding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Mass { relative } => write!(
+                f,
+                "the standard deviation of its mass is {} % of the mass, which may be a slip. The law of the draws is very skewed then, and the \
+                 deviations that are told of them come out too small",
+                Short(100.0 * relative)
+            ),
             Self::Rounded { relative_distance } => write!(
                 f,
                 "its inertia belongs to no body, by rounding: it was moved by {relative_distance:.2e} of \

@@ -83,11 +83,14 @@ impl AssemblyPart {
         let covariance = Matrix6::from_diagonal(&Six::from(six).map(|sigma| sigma * sigma));
         let inertia = SecondMomentLaw::new(&own, &covariance).ok_or(PartError::TooWide)?;
         judge(&mut findings, &inertia, &six);
+        let relative = statement.deviations[0] / statement.mass_kg;
+        if relative > 1.0 {
+            findings.push(PartFinding::Mass { relative });
+        }
         let centre = Vector3::from(statement.mass_centre_m);
         let turned = own.rotated(&statement.attitude)?;
         let nominal = MassProperties::new(statement.mass_kg, centre, turned)?;
         let first_order = as_stated(&statement, nominal, &covariance);
-        let relative = statement.deviations[0] / statement.mass_kg;
         let variance = libm::log1p(relative * relative);
         let logarithm = [-0.5 * variance, variance.sqrt()];
         Ok(Self { statement, first_order, inertia, logarithm, findings })

@@ -92,7 +92,7 @@ impl Context {
             for (entry, wanted) in three.zip(wanted) {
                 let Some(wanted) = *wanted else { continue };
                 let off = (implied[entry] - wanted).abs();
-                if off > AGREE * wanted + SMALL * largest {
+                if off > (AGREE * wanted).max(SMALL * largest) {
                     let implied = implied[entry];
                     warnings.push(StatementWarning::CentreMissed { entry, wanted, implied });
                 }
@@ -113,7 +113,7 @@ impl Context {
                 let implied = deviations[entry];
                 let still = if entry < 3 && stated == 0.0 { STILL * trace } else { 0.0 };
                 let small = small.max(still);
-                if (implied - stated).abs() > AGREE * stated + small {
+                if (implied - stated).abs() > (AGREE * stated).max(small) {
                     let because = if implied > stated {
                         self.why_more(model, entry, stated)
                     } else {
