@@ -104,7 +104,7 @@ fn joint_law(rng: &mut ChaCha8Rng, turn: f64, lengths: [f64; 3]) -> MassProperti
     let lengths = lengths.map(|x| normal(x, x * share()));
     let mean = UnitQuaternion::from_scaled_axis(Vector3::new(0.1, -0.3, 0.2));
     let axes: AxesLaw = if turn > 0.0 {
-        let p = nalgebra::Matrix3::new(1.0, 0.2, 0.1, 0.2, 0.5, 0.0, 0.1, 0.0, 0.7) * turn * turn;
+        let p = Matrix3::new(1.0, 0.2, 0.1, 0.2, 0.5, 0.0, 0.1, 0.0, 0.7) * turn * turn;
         RadiallyConstrainedGaussian::from_rotation_covariance(mean, p, 0.01).unwrap().into()
     } else {
         FixedAttitude::new(mean).into()
