@@ -263,15 +263,10 @@ impl<R: Read> Read for CsvLines<R> {
             }
             // What stands before it is read first: the names may be all that is wanted.
             self.refused = taken.err();
-            if read == 0 {
+            // Nobody asks again after the end.
+            if read == 0 && self.refused.is_none() {
                 break;
             }
-        }
-        // Nobody asks again after the end.
-        if self.given == self.ready.len()
-            && let Some(refused) = self.refused.take()
-        {
-            return Err(refused);
         }
         let given = (&self.ready[self.given..]).read(buffer)?;
         self.given += given;

@@ -28,8 +28,8 @@ pub enum LinkProblem {
     },
     /// Another file may say whether angles are degrees, and about which axes they turn.
     #[error(
-        "its axes are given by angles, and whether these are degrees, and about which axes they turn, may be said in another file, which \
-         is not read: a `quat` needs neither, nor does a file whose <compiler> with angle and eulerseq comes after its last <include>"
+        "its axes are given by angles. Whether these are degrees and about which axes they turn may be said in another file, which is \
+         not read: give a `quat` instead, or a <compiler> with angle and eulerseq after the last <include>"
     )]
     Angles,
     /// The compiler says of angles what is neither degrees nor radians.

@@ -2,7 +2,7 @@
 
 use gyradius_campaign::{
     Block, Difference, Doing, Forecast, Plan, Progress, Shard, Shared, Until, begun, missing_runs,
-    run_missing, threads, told, unknown,
+    run_missing, threads, told, why_unknown,
 };
 use serde::Serialize;
 use std::{ops::Range, path::Path};
@@ -167,11 +167,12 @@ pub struct ModelStatus {
 impl Status {
     /// Of the study of a scenario in a folder, as its files tell.
     pub(crate) fn of<C: Subject>(scenario: &C, folder: &Path) -> Result<Self, StudyError> {
-        let blocks = told(folder, &contents(scenario), &identity(scenario))?;
+        let (contents, identity) = (contents(scenario), identity(scenario));
+        let blocks = told(folder, &contents, &identity)?;
         // Of a complete study whose blocks are lost, all runs are missing.
         if blocks.is_empty()
             && begun(folder).is_none()
-            && let Some(problem) = unknown(folder, &contents(scenario), &identity(scenario))?
+            && let Some(problem) = why_unknown(folder, &contents, &identity)?
         {
             return Err(StudyError::Absent { path: folder.to_owned(), problem });
         }

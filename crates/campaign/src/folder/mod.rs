@@ -41,7 +41,7 @@ pub use name::HIDDEN;
 use name::{Found, Name, look};
 use record::Record;
 pub use shared::Shared;
-pub use told::{begun, missing_runs, told, unknown};
+pub use told::{begun, missing_runs, told, why_unknown};
 
 use crate::identity::Difference;
 

@@ -94,7 +94,7 @@ pub fn told(
 ///
 /// # Errors
 /// The file that tells what was written there cannot be read.
-pub fn unknown(
+pub fn why_unknown(
     place: &Path,
     contents: &Contents<'_>,
     identity: &Identity,

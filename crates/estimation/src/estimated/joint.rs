@@ -61,15 +61,15 @@ pub(super) struct Joint {
 /// The covariance of the ten is D S Dᵀ to first order, linear in the covariance S of scalars and rotations: a convex problem. What the
 /// law's own moments differ from that is added to what is sought, and so on.
 ///
-/// First order is that of a body with the same axes, whose moments may differ more: across equal moments rotations would do nothing.
+/// First order is that of another body with the same axes, whose moments may differ more: across equal moments rotations would do nothing.
 pub(super) fn matched(
     target: &TenEstimate,
     start: &MassProperties,
-    first_order: &MassProperties,
+    other: &MassProperties,
 ) -> Option<Joint> {
     let form = target.form();
     let Means { mean, axes } = Means::of(start)?;
-    let apart = Means::of(first_order)?.mean - mean;
+    let apart = Means::of(other)?.mean - mean;
     let units = units(target);
     let mut sought = *target.covariance();
     let spread = nearest(form, &(mean + apart), &axes, &sought, &units)?;

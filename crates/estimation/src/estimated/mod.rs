@@ -120,24 +120,20 @@ impl EstimatedBody {
         let mut own: Vec<Joint> = [own, other, narrow].into_iter().flatten().collect();
         let apart = if off > ROUGH { apart(&at, &start) } else { None };
         own.extend(apart.and_then(|apart| joint::matched(&at, &start, &apart)));
-        if off > POOR {
-            let by_off = own.into_iter().filter_map(|joint| Some((joint.off(&unitless)?, joint)));
-            let nearest = by_off.min_by(|a, b| a.0.total_cmp(&b.0));
-            own = nearest.and_then(|(_, joint)| joint.refined(&unitless)).into_iter().collect();
-        }
-        let nearest = |laws: Vec<(MassPropertiesLaw, EstimateDistance)>| {
-            laws.into_iter().min_by(|a, b| a.1.total().total_cmp(&b.1.total()))
-        };
-        let own = own.into_iter().filter_map(|joint| {
+        let by_off = own.into_iter().filter_map(|joint| Some((joint.off(&unitless)?, joint)));
+        let nearest = by_off.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, joint)| joint);
+        let own =
+            if off > POOR { nearest.and_then(|joint| joint.refined(&unitless)) } else { nearest };
+        let own = own.and_then(|joint| {
             let distance = distance_of(&unitless, &joint.law([1.0, 1.0])?)?;
             Some((joint.law(units)?, distance))
         });
-        let own = nearest(own.collect());
-        let si = log.as_ref().and_then(|law| in_units(law, units));
         let is_near = own.as_ref().is_some_and(|own| own.1.total() < DRAWN);
-        let fitted =
-            if wide && !is_near { si.as_ref().and_then(|law| fitted(law, estimate)) } else { None };
-        let joint = nearest(own.into_iter().chain(fitted).collect());
+        let si = log.as_ref().and_then(|law| in_units(law, units));
+        let drawn = si.as_ref().filter(|_| wide && !is_near);
+        let fitted = drawn.and_then(|law| fitted(law, estimate));
+        let both = own.into_iter().chain(fitted);
+        let joint = both.min_by(|a, b| a.1.total().total_cmp(&b.1.total()));
         let log_cholesky: Option<(LogCholeskyTen, EstimateDistance)> = log.and_then(|law| {
             let distance = distance_of(&unitless, &law)?;
             Some((si?, distance))

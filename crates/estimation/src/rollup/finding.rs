@@ -72,8 +72,8 @@ impl fmt::Display for PartFinding {
         match self {
             Self::Mass { relative } => write!(
                 f,
-                "the standard deviation of its mass is {} % of the mass, which may be a slip. The law of the draws is very skewed then, and the \
-                 deviations that are told of them come out too small",
+                "the standard deviation of its mass is {} % of the mass, which may be a slip. Its law is very skewed then, and \
+                 thousands of draws show too small a standard deviation",
                 Short(100.0 * relative)
             ),
             Self::Rounded { relative_distance } => write!(

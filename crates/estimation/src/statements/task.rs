@@ -195,8 +195,9 @@ impl Asked {
 
 #[cfg(test)]
 mod tests {
-    use crate::{AxesStatement, CentreStatement, ProductsStatement, Statements};
-    use gyradius_dispersion::{EntryMoments, PrincipalDispersion, ScalarRoots};
+    use crate::{
+        AxesStatement, CentreStatement, ProductsStatement, Statements, statements::tests::by_axes,
+    };
     use gyradius_inertia::{Inertia, SecondMoments};
     use nalgebra::{UnitQuaternion, Vector3};
     use proptest::prelude::*;
@@ -227,12 +228,10 @@ mod tests {
                 prop_assert!(*found <= most.to_radians() * (1.0 + 1e-6), "{found} {most}");
             }
             // Moments move as the axes move them, and as the centre adds.
-            let law = model.law();
-            let still = ScalarRoots::normal(nominal.second_moments().roots(), [0.0; 3]).unwrap();
-            let axes = EntryMoments::of(&PrincipalDispersion::new(still, law.axes().clone()));
+            let axes = by_axes(&model);
             for e in 0..3 {
                 let found = model.implied().deviations()[e];
-                let (axes, added) = (axes.deviations()[e], centre.entry_variances(50.0)[e].sqrt());
+                let (axes, added) = (axes[e], centre.entry_variances(50.0)[e].sqrt());
                 let most = 1.1 * axes + 3.0 * added + 1e-4 * nominal.matrix().trace();
                 prop_assert!(found < most, "{e}: {found} {axes} {added}");
             }

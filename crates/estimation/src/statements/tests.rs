@@ -2,6 +2,7 @@
 
 use super::*;
 use gyradius_attitude::UniformAttitude;
+use gyradius_dispersion::{EntryMoments, PrincipalDispersion, ScalarRoots};
 use gyradius_inertia::{InertiaMatrix, RootSecondMoments, SecondMoments};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use proptest::{prelude::*, test_runner::TestCaseResult};
@@ -15,6 +16,13 @@ mod still;
 
 fn body(moments: [f64; 3], products: [f64; 3]) -> Inertia {
     Inertia::try_from(InertiaMatrix::from_entries(moments, products).unwrap()).unwrap()
+}
+
+/// The deviations that the axes alone give the entries.
+pub(super) fn by_axes(model: &StatedModel) -> [f64; 6] {
+    let roots = model.nominal().second_moments().roots();
+    let still = ScalarRoots::normal(roots, [0.0; 3]).unwrap();
+    EntryMoments::of(&PrincipalDispersion::new(still, model.law().axes().clone())).deviations()
 }
 
 fn percent(x: f64) -> Option<MomentsStatement> {

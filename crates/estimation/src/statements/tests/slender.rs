@@ -1,14 +1,6 @@
 //! Slender bodies, whose smallest moment the axes alone move by more than is stated of it.
 
 use super::*;
-use gyradius_dispersion::{EntryMoments, PrincipalDispersion, ScalarRoots};
-
-/// The deviations that the axes alone give the entries.
-fn by_axes(model: &StatedModel) -> [f64; 6] {
-    let roots = model.nominal().second_moments().roots();
-    let still = ScalarRoots::normal(roots, [0.0; 3]).unwrap();
-    EntryMoments::of(&PrincipalDispersion::new(still, model.law().axes().clone())).deviations()
-}
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
