@@ -58,6 +58,11 @@ pub enum BodyError {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "Fields", into = "Fields")
+)]
 pub struct Body {
     mass: f64,
     inertia: InertiaMatrix,
@@ -140,14 +145,19 @@ impl fmt::Display for Body {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct BodyState {
     /// Mass centre, inertial axes, m.
+    #[cfg_attr(feature = "serde", serde(rename = "position_m"))]
     pub position: Vector3<f64>,
     /// Velocity of the mass centre, inertial axes, m/s.
+    #[cfg_attr(feature = "serde", serde(rename = "velocity_m_per_s"))]
     pub velocity: Vector3<f64>,
     /// Takes body components to inertial components.
     pub attitude: UnitQuaternion<f64>,
     /// Angular velocity, body axes, rad/s.
+    #[cfg_attr(feature = "serde", serde(rename = "angular_velocity_rad_per_s"))]
     pub angular_velocity: Vector3<f64>,
 }
 
@@ -203,6 +213,8 @@ impl BodyState {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct MovingBody {
     body: Body,
     state: BodyState,
@@ -275,6 +287,31 @@ impl MovingBody {
     }
 }
 
+/// The serialized form of a body.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Fields {
+    mass_kg: f64,
+    inertia_kg_m2: InertiaMatrix,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Fields> for Body {
+    type Error = BodyError;
+
+    fn try_from(fields: Fields) -> Result<Self, BodyError> {
+        Self::new(fields.mass_kg, fields.inertia_kg_m2)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Body> for Fields {
+    fn from(body: Body) -> Self {
+        Self { mass_kg: body.mass, inertia_kg_m2: body.inertia }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -325,5 +362,17 @@ mod tests {
             let state = BodyState { attitude, ..Default::default() };
             assert!(matches!(state.checked(), Err(BodyError::Attitude { .. })), "{w}");
         }
+    }
+
+    #[cfg(feature = "serde")]
+    #[test]
+    fn serde_goes_through_the_constructor() {
+        let inertia = InertiaMatrix::from_entries([2.0, 3.0, 4.0], [0.1, 0.2, 0.3]).unwrap();
+        let state = BodyState { velocity: Vector3::new(0.1, 0.2, 0.3), ..BodyState::default() };
+        let moving = Body::new(7.0, inertia).unwrap().moving(state);
+        let json = serde_json::to_string(&moving).unwrap();
+        assert_eq!(serde_json::from_str::<MovingBody>(&json).unwrap(), moving);
+        let error = serde_json::from_str::<MovingBody>(&json.replace("7.0", "-7.0")).unwrap_err();
+        assert!(error.to_string().starts_with("mass = -7.0 kg"), "{error}");
     }
 }

@@ -35,6 +35,8 @@ use crate::{
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Outcome {
     springs: Fates,
     payload: MovingBody,
@@ -42,6 +44,7 @@ pub struct Outcome {
     /// Payload and stage when the clamp opened.
     start: [BodyState; 2],
     /// Energy of the springs then, J.
+    #[cfg_attr(feature = "serde", serde(rename = "stored_energy_j"))]
     stored: f64,
     steps: u32,
     rounding: Rounding,

@@ -17,10 +17,14 @@ use crate::{Separation, Settings, load::Size, track::Fate};
 ///
 /// and likewise for the velocity, with 1/μ in the place of |r|.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub(crate) struct Rounding {
     /// Of the payload's angular momentum about its mass centre, kg·m²/s.
+    #[cfg_attr(feature = "serde", serde(rename = "momentum_kg_m2_per_s"))]
     pub(crate) momentum: f64,
     /// Of the velocity of the mass centres from each other, m/s.
+    #[cfg_attr(feature = "serde", serde(rename = "velocity_m_per_s"))]
     pub(crate) velocity: f64,
 }
 

@@ -8,6 +8,8 @@ use crate::{
 
 /// What has become of one load; times in s.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", deny_unknown_fields))]
 pub(crate) enum Fate {
     /// It never acts.
     Failed,
@@ -16,11 +18,14 @@ pub(crate) enum Fate {
     Acting,
     /// It came to its end before it started, and never acted.
     Missed {
+        #[cfg_attr(feature = "serde", serde(rename = "time_s"))]
         time: f64,
     },
     /// It acted to its end, and was pressed back from there from a time on.
     Ended {
+        #[cfg_attr(feature = "serde", serde(rename = "time_s"))]
         time: f64,
+        #[cfg_attr(feature = "serde", serde(rename = "pressed_again_s"))]
         pressed_again: Option<f64>,
     },
 }

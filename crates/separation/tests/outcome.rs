@@ -1,6 +1,8 @@
 //! What an outcome says, against closed forms.
 
 use crate::common::{inertia, moved, paper, skewed, tumbling};
+#[cfg(feature = "serde")]
+use gyradius_separation::Outcome;
 use gyradius_separation::{Batch, Body, BodyState, Separation, Settings, Spring};
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 
@@ -29,6 +31,23 @@ fn outcomes_keep_their_start() {
         count += 1;
     });
     assert_eq!(count, starts.len());
+}
+
+/// An outcome that is written and read again says the same, to the bit; what cannot be is refused.
+#[cfg(feature = "serde")]
+#[test]
+fn outcomes_are_written_and_read_again() {
+    for separation in [paper(), skewed()] {
+        let outcome = separation.run(&Settings::default()).unwrap();
+        let json = serde_json::to_string(&outcome).unwrap();
+        let again: Outcome = serde_json::from_str(&json).unwrap();
+        assert_eq!(again, outcome);
+        assert_eq!(again.energy_split(), outcome.energy_split());
+        let mass = format!("\"mass_kg\":{:?}", outcome.payload().body().mass_kg());
+        assert!(json.contains(&mass), "{json}");
+        let bad = json.replace(&mass, "\"mass_kg\":-1.0");
+        assert!(serde_json::from_str::<Outcome>(&bad).is_err());
+    }
 }
 
 /// The energy of the springs is all there, in translation and rotation of either body.
