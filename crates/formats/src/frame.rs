@@ -147,12 +147,28 @@ fn three(numbers: &[Number]) -> Vector3<f64> {
     Vector3::from_fn(|i, _| numbers.get(i).map_or(0.0, |number| number.value))
 }
 
+/// That a URDF file is of version 1.1 or later, which its root says and is 1.0 otherwise: before, readers pass over quaternions.
+fn with_quaternions(node: Node<'_, '_>) -> Result<(), LinkProblem> {
+    let root = std::iter::successors(Some(node), |node| node.parent()).last().unwrap_or(node);
+    let said = root.attribute("version").unwrap_or("1.0");
+    let version = said.split_once('.').and_then(|(major, minor)| {
+        Some((major.trim().parse::<u32>().ok()?, minor.trim().parse::<u32>().ok()?))
+    });
+    if version.is_some_and(|version| version >= (1, 1)) {
+        Ok(())
+    } else {
+        Err(LinkProblem::QuaternionVersion { version: shortened(said) })
+    }
+}
+
 fn urdf(node: Node<'_, '_>) -> Result<Frame, LinkProblem> {
     let origin = node.child("origin");
     let numbers = |name| origin.and_then(|origin| origin.numbers(name, 3)).transpose();
     let (xyz, rpy) = (numbers("xyz")?, numbers("rpy")?);
-    // Since version 1.2 of the format.
     let quaternion = origin.and_then(|origin| origin.numbers("quat_xyzw", 4)).transpose()?;
+    if quaternion.is_some() {
+        with_quaternions(node)?;
+    }
     let rotation = match (rpy, quaternion) {
         (Some(_), Some(_)) => {
             return Err(FileBodyError::Both { first: "rpy", second: "quat_xyzw" }.into());

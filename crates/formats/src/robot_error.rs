@@ -41,6 +41,15 @@ pub enum LinkProblem {
         /// What it says, shortened.
         word: String,
     },
+    /// A quaternion in a URDF file of a version that has none.
+    #[error(
+        "its axes are given by quat_xyzw, over which readers of URDF of version \"{version}\" pass: give <robot version=\"1.1\">, or rpy \
+         instead"
+    )]
+    QuaternionVersion {
+        /// The version that the file states, shortened, or 1.0 if it states none.
+        version: String,
+    },
     /// A word that is none of those that are known.
     #[error("{field} = \"{value}\": it must be {allowed}")]
     Word {
@@ -88,6 +97,7 @@ impl LinkProblem {
             },
             Self::Orientation { .. }
             | Self::AngleUnit { .. }
+            | Self::QuaternionVersion { .. }
             | Self::Word { .. }
             | Self::Several
             | Self::OutOfRange => true,

@@ -250,7 +250,7 @@ impl Robot {
 
     fn xml(&self) -> Vec<u8> {
         let (root, link) = match self.style {
-            Style::Urdf => ("robot name='r'", "link"),
+            Style::Urdf => ("robot name='r' version='1.1'", "link"),
             Style::Full | Style::Diagonal => ("mujoco", "body"),
             Style::Sdf => ("sdf version='1.9'", "link"),
             Style::SdfAttributes => ("sdf", "link"),
@@ -554,12 +554,44 @@ fn links_that_cannot_be_told_say_why() {
     let urdf = |turned: &str| {
         let six = "<inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/>";
         let inside = format!("<origin {turned}/><mass value='1'/>{six}");
-        problem("a.urdf", &format!("<robot><link><inertial>{inside}</inertial></link></robot>"))
+        problem(
+            "a.urdf",
+            &format!("<robot version='1.2'><link><inertial>{inside}</inertial></link></robot>"),
+        )
     };
     let field = "quat_xyzw";
     assert_eq!(urdf("quat_xyzw='0 0 0 0'"), LinkProblem::Orientation { field });
     for turned in ["rpy='0 0 0' quat_xyzw='0 0 0 1'", "quat_xyzw='0 0 1'", "quat_xyzw='0 0 x 1'"] {
         assert!(matches!(urdf(turned), LinkProblem::Body(_)), "{turned}");
+    }
+    // Readers apply a quaternion from version 1.1 on, and pass over it before.
+    let six = "<inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/>";
+    for (said, version) in [
+        ("", Some("1.0")),
+        ("version='1.0'", Some("1.0")),
+        ("version='0.9'", Some("0.9")),
+        ("version='1'", Some("1")),
+        ("version='1.1'", None),
+        ("version='1.10'", None),
+        ("version='2.0'", None),
+    ] {
+        for (turned, refused) in [
+            ("quat_xyzw='0 0 1 0'", version),
+            ("rpy='0 0 1' quat_xyzw='0 0 1 0'", version),
+            ("rpy='0 0 1'", None),
+        ] {
+            let inside = format!("<origin {turned}/><mass value='1'/>{six}");
+            let text = format!("<robot {said}><link><inertial>{inside}</inertial></link></robot>");
+            let robot = RobotFile::parse(Path::new("a.urdf"), text.into_bytes()).unwrap();
+            let found = robot.links()[0].numbers().err();
+            let expected = refused
+                .map(|version| LinkProblem::QuaternionVersion { version: version.to_owned() });
+            if turned.contains("rpy") && turned.contains("quat") && expected.is_none() {
+                assert!(matches!(found, Some(LinkProblem::Body(_))), "{said} {turned}: {found:?}");
+            } else {
+                assert_eq!(found, expected.as_ref(), "{said} {turned}");
+            }
+        }
     }
     let gazebo =
         "<robot><gazebo reference='a'><inertial><mass>1</mass></inertial></gazebo></robot>";
