@@ -55,6 +55,12 @@ pub trait Simulation: Sync {
         false
     }
 
+    /// Why the runs that were done do not count, though none of them is to blame: what does them has changed meanwhile, or something
+    /// failed on this machine. It is asked after runs, before their rows are kept, and ends the campaign. Nothing if nothing is said.
+    fn fault(&self) -> Option<String> {
+        None
+    }
+
     /// Does these runs and pushes a row for each of them, in their order. A run that fails is a row too, with
     /// what it has and its [`Failure`](crate::Failure). A panic is no such failure: it passes through [`run`] and
     /// [`run_missing`](crate::run_missing) to their caller and ends the campaign. Blocks that are finished by then stay in the folder,
@@ -103,6 +109,9 @@ pub(crate) fn run_range<S: Simulation>(
 ) -> Result<Table, CampaignError> {
     let asked = Asked { simulation, empty, together: simulation.together().max(1), runs, more };
     let parts = if simulation.apart() { asked.in_threads_apart()? } else { asked.in_groups()? };
+    if let Some(problem) = simulation.fault() {
+        return Err(CampaignError::Fault { problem });
+    }
     let joined = parts.into_iter().reduce(|mut whole, part| {
         whole.append(part);
         whole
@@ -238,6 +247,12 @@ pub enum CampaignError {
         runs: Range<u64>,
         /// How many rows it wrote.
         rows: usize,
+    },
+    /// Runs do not count, though none of them is to blame ([`Simulation::fault`]).
+    #[error("{problem}; the runs of the blocks that were finished before are kept")]
+    Fault {
+        /// What is wrong.
+        problem: String,
     },
     /// A block of runs that was there cannot be read.
     #[error(transparent)]

@@ -196,6 +196,23 @@ fn misbehaviour_fails_its_own_runs_alone() {
     }
 }
 
+/// What a process started and left behind holds its pipes open, and is not waited for; an answer that it had given counts.
+#[test]
+fn what_an_ended_process_left_behind_is_not_waited_for() {
+    let places = BTreeSet::from([1, 3]);
+    for (mischief, kind) in [
+        ("sleep 500 & exit 3", Some("the simulator ended")),
+        ("(exec 3<&0; sleep 500) & exit 3", Some("the simulator ended")),
+        ("(while sleep 0.01; do echo busy >&2; done) & exit 3", Some("the simulator ended")),
+        ("sleep 500 & answer $run; exit 0", None),
+    ] {
+        let simulator = simulator(mischief, false, 300.0);
+        let table = table(&simulator, &places, 5, 2);
+        let failed = if kind.is_some() { &places } else { &BTreeSet::new() };
+        assert_rows(&table, failed, kind.unwrap_or("ok"), mischief);
+    }
+}
+
 /// The answer and a line more in one write.
 const AND_MORE: &str =
     r#"printf '{"run":%s,"outputs":{"y":%s,"seed":%s}}\nall done\n' "$run" "$x" "$seed""#;

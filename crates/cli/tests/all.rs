@@ -33,5 +33,7 @@ mod simulator;
 mod slips;
 #[cfg(unix)]
 mod slurm;
+#[cfg(unix)]
+mod tampered;
 mod until;
 mod verdict;

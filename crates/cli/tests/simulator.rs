@@ -330,3 +330,24 @@ fn a_signal_ends_runs_that_take_long() {
         }
     }
 }
+
+/// Where no temporary folder can be made, no run is to blame: nothing is kept, and the same command goes on.
+#[test]
+fn a_run_without_a_temporary_folder_is_no_failed_run() {
+    let scratch = Scratch::new();
+    let command = "runs = 3\nsimulation.per_run = true\nsimulation.command = ['sh', '-c', '''echo '{\"outputs\":{\"y\":1}}' > output.json''']\n";
+    let rest = SCENARIO.replace("[simulation]\ncommand = [\"sh\", \"answer.sh\"]\n", "");
+    fs::write(scratch.path("s.toml"), command.to_owned() + &rest.replace("runs = 4000\n", ""))
+        .unwrap();
+    let study = ["study", "--scenario", "s.toml", "--out", "it"];
+    let rare = ["rare", "y >= 2", "--scenario", "s.toml"];
+    for words in [&study[..], &rare] {
+        let output = scratch.command(words).env("TMPDIR", "/nonexistent").output().unwrap();
+        let [_, err] = said(&output);
+        let told = "a temporary folder for a run cannot be used in /nonexistent: No such file";
+        assert!(output.status.code() == Some(2) && err.contains(told), "{words:?}: {err}");
+    }
+    assert!(!scratch.path("it/report.html").exists());
+    let output = scratch.run(&study);
+    assert!(output.status.success(), "{:?}", said(&output));
+}

@@ -294,11 +294,7 @@ impl Status {
     /// # Errors
     /// The folder holds no study, or its files cannot be read.
     pub fn read(folder: &Path) -> Result<Self, StudyError> {
-        let complete = || read_file(&folder.join("scenario.toml")).ok();
-        let text = begun(folder).or_else(complete).ok_or_else(|| StudyError::Absent {
-            path: folder.to_owned(),
-            problem: "it holds no study".to_owned(),
-        })?;
+        let text = shards::text(folder)?;
         let scenario = AnyScenario::from_toml(&text, folder)?;
         of_either!(&scenario, scenario => Self::of(&**scenario, folder))
     }

@@ -7,6 +7,7 @@ use crate::{
     contents::{contents, identity},
     decisions::{check_columns, group, requirements_of},
     ended::Ended,
+    read_only::complete_study,
     study::{do_what_is_left, plan, same_as_before, to_be_done},
     subject::Subject,
 };
@@ -91,11 +92,19 @@ pub(crate) fn carry_out<C: Subject>(
     progress: Progress<'_>,
     say: &dyn Fn(Notice),
 ) -> Result<Study<C::Summary>, StudyError> {
-    match run_to_the_end(scenario, options, progress, say)? {
-        Some((scenario, ended)) => {
+    let done = match run_to_the_end(scenario, options, progress, say) {
+        Ok(Some((scenario, ended))) => {
             let doing = (Doing::All, Some(ended));
             do_what_is_left(&scenario, options, doing, progress, &|_| {})
         }
-        None => do_what_is_left(scenario, options, (Doing::All, None), progress, say),
+        Ok(None) => do_what_is_left(scenario, options, (Doing::All, None), progress, say),
+        Err(error) => Err(error),
+    };
+    match done {
+        // There may be nothing to be written.
+        Err(error @ StudyError::ReadOnly { .. }) if !options.force && !options.retry_failed => {
+            complete_study(scenario, options)?.ok_or(error)
+        }
+        done => done,
     }
 }

@@ -24,6 +24,14 @@ pub enum StudyError {
         /// What is wrong with it.
         problem: String,
     },
+    /// The output folder cannot be written, though nothing in it is in the way.
+    #[error("output folder {}: {problem}", path.display())]
+    ReadOnly {
+        /// The folder.
+        path: PathBuf,
+        /// What the system says.
+        problem: String,
+    },
     /// What is asked for is not there.
     #[error("{}: {problem}", path.display())]
     Absent {
@@ -149,6 +157,11 @@ impl From<FolderError> for StudyError {
         if error.is_stopped() {
             return Self::Campaign(CampaignError::Stopped);
         }
-        Self::Folder { path: error.path().to_owned(), problem: error.problem() }
+        let (path, problem) = (error.path().to_owned(), error.problem());
+        if error.is_read_only() {
+            Self::ReadOnly { path, problem }
+        } else {
+            Self::Folder { path, problem }
+        }
     }
 }

@@ -47,6 +47,7 @@ mod model;
 mod options;
 mod quantity;
 mod rare;
+mod read_only;
 mod regions;
 mod releases;
 mod replay;

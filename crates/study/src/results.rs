@@ -1,6 +1,6 @@
 //! The results of a study as plain data: read back from its folder, and the report that is made from them.
 
-use gyradius_campaign::{Contents, Folder, FolderError, restore, sha256};
+use gyradius_campaign::{Contents, Folder, FolderError, changed, restore, sha256};
 use gyradius_formats::read_text;
 use gyradius_report::Document;
 use serde_json::Value;
@@ -129,6 +129,19 @@ pub(crate) fn read<C: Subject>(folder: &Path) -> Result<Results<C, C::Summary>, 
     // A study that was killed while it replaced this one is put right first.
     restore(folder)?;
     let (file, written) = (folder.join("scenario.toml"), folder.join("summary.json"));
+    let changed = |names: &[&str]| changed(folder, "study", names);
+    if !written.is_file()
+        && file.is_file()
+        && let Some(gone) = changed(&["summary.json"])?
+    {
+        let again = "the command that made the study puts its runs together again";
+        return Err(problem(format!("{gone}: {again}")));
+    }
+    if !file.is_file()
+        && let Some(gone) = changed(&["scenario.toml"])?
+    {
+        return Err(problem(gone));
+    }
     if !file.is_file() || !written.is_file() {
         return Err(problem(
                 "it holds no study, which has a scenario.toml and a summary.json; name the folder of one"
@@ -155,6 +168,9 @@ pub(crate) fn read<C: Subject>(folder: &Path) -> Result<Results<C, C::Summary>, 
             scenario: there,
             summary: fingerprint,
         });
+    }
+    if let Some(changed) = changed(&["scenario.toml", "summary.json"])? {
+        return Err(problem(changed));
     }
     let summary = serde_json::from_str(&text).map_err(no_summary)?;
     Ok(Results { folder: folder.to_owned(), scenario, summary })

@@ -1,11 +1,11 @@
 //! A share of a study's runs, and what of a study is there: for studies that many processes do.
 
 use gyradius_campaign::{
-    Block, Difference, Doing, Forecast, Plan, Progress, Shard, Shared, Until, begun, missing_runs,
-    run_missing, threads, told, why_unknown,
+    Block, Difference, Doing, Forecast, HIDDEN, Plan, Progress, Shard, Shared, Until, begun,
+    changed, missing_runs, run_missing, threads, told, why_unknown,
 };
 use serde::Serialize;
-use std::{ops::Range, path::Path};
+use std::{fs, io, ops::Range, path::Path};
 
 use crate::{
     Notice, Options, ScenarioError, StudyError,
@@ -138,6 +138,25 @@ fn agree<C: Subject>(scenario: &C, folder: &Path) -> Result<(), StudyError> {
     }
 }
 
+/// The text of the scenario of the study in a folder, as it was begun or done.
+pub(crate) fn text(folder: &Path) -> Result<String, StudyError> {
+    let absent = |problem: String| StudyError::Absent { path: folder.to_owned(), problem };
+    if let Some(text) = begun(folder) {
+        return Ok(text);
+    }
+    if let Err(error) = fs::read_dir(folder.join(HIDDEN))
+        && error.kind() == io::ErrorKind::PermissionDenied
+    {
+        let problem = format!("{HIDDEN} in it, which tells of its runs, cannot be read: {error}");
+        return Err(absent(problem));
+    }
+    // Another text may be another scenario, or none.
+    if let Some(problem) = changed(folder, "study", &["scenario.toml"])? {
+        return Err(absent(problem));
+    }
+    read_file(&folder.join("scenario.toml")).map_err(|_| absent("it holds no study".to_owned()))
+}
+
 /// What of a study is there.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Status {
@@ -151,6 +170,8 @@ pub struct Status {
     pub models: Vec<ModelStatus>,
     /// The runs that are not done.
     pub missing: Vec<Missing>,
+    /// What became of a file without which the study is not complete, in words, if it is not as it was written.
+    pub changed: Option<String>,
 }
 
 /// What of the runs of a model is there.
@@ -188,9 +209,17 @@ impl Status {
             let gaps = missing_runs(ranges, scenario.runs(), u64::MAX);
             missing.extend(gaps.into_iter().map(|runs| Missing::new(model, runs)));
         }
+        let changed = match begun(folder) {
+            None => changed(folder, "study", &["scenario.toml", "summary.json"])?,
+            // They are written when all is put together.
+            Some(_) => None,
+        };
         Ok(Self {
             scenario: scenario.name().to_owned(),
-            complete: missing.is_empty() && blocks.iter().all(Block::is_in_place),
+            complete: missing.is_empty()
+                && blocks.iter().all(Block::is_in_place)
+                && changed.is_none(),
+            changed,
             runs_per_model: scenario.runs(),
             models,
             missing,

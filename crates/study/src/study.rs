@@ -41,6 +41,10 @@ pub struct Study<S = Summary> {
 }
 
 impl<S> Study<S> {
+    pub(crate) fn of(folder: PathBuf, runs: Vec<Runs>, summary: S) -> Self {
+        Self { folder, runs, summary }
+    }
+
     /// Where it is.
     #[must_use]
     pub fn folder(&self) -> &Path {
@@ -248,7 +252,9 @@ fn write<C: Subject>(
 }
 
 /// A table of each model, without runs.
-fn empty_tables<S: Simulation>(simulations: &[(&str, S)]) -> Result<Vec<Table>, CampaignError> {
+pub(crate) fn empty_tables<S: Simulation>(
+    simulations: &[(&str, S)],
+) -> Result<Vec<Table>, CampaignError> {
     let table = |(model, simulation): &(&str, S)| Table::new(model, 0, simulation.columns());
     Ok(simulations.iter().map(table).collect::<Result<_, _>>()?)
 }
@@ -268,6 +274,7 @@ fn reduced<C: Subject>(
     let place = folder.place().to_owned();
     match whole.then(|| whole_summary::<C>(&place)).flatten() {
         Some(summary) => {
+            there.settle(&identity(scenario))?;
             let runs = empty_tables(simulations)?.into_iter().map(Runs::from).collect();
             Ok(Study { folder: place, runs, summary })
         }

@@ -29,6 +29,8 @@ pub(super) struct Child {
     errors: Option<ChildStderr>,
     /// Set once its status has been taken: its number may be another process's from then on.
     taken: bool,
+    /// When it was first seen that it has ended.
+    ended: Option<Instant>,
     tail: Tail,
     /// What came of standard output: lines that are not taken yet.
     arrived: Vec<u8>,
@@ -73,6 +75,7 @@ impl Child {
             errors: process.stderr.take(),
             process,
             taken: false,
+            ended: None,
             tail: Tail::default(),
             arrived: Vec::new(),
             buffer: vec![0; 64 << 10].into(),
@@ -116,6 +119,10 @@ impl Child {
                 self.read_errors();
             }
             if !reads {
+                // What it started may hold its pipes open, and answers to nobody.
+                if self.has_ended_for(ENDING) {
+                    return Err(self.gone());
+                }
                 continue;
             }
             match self.read_output() {
@@ -224,7 +231,12 @@ impl Child {
         }
     }
 
-    /// Waits until there is something to read on standard output or standard error, which it tells apart, or room to
+    /// Whether it has been seen for so long that it has ended.
+    fn has_ended_for(&mut self, time: Duration) -> bool {
+        self.has_ended() && self.ended.get_or_insert_with(Instant::now).elapsed() >= time
+    }
+
+    /// Waits a while until there is something to read on standard output or standard error, which it tells apart, or room to
     /// write; none if there is nothing in time.
     fn wait(&self, writes: bool, patience: Patience<'_>) -> Option<[bool; 2]> {
         loop {
@@ -242,7 +254,7 @@ impl Child {
             pipes.extend(input.map(|pipe| PollFd::from_borrowed_fd(pipe, PollFlags::OUT)));
             match poll(&mut pipes, Some(&timeout)) {
                 Ok(0) if left.is_zero() => return None,
-                Ok(0) => {}
+                Ok(0) => return Some([false; 2]),
                 Ok(_) => {
                     let mut ready = pipes.iter().map(|pipe| !pipe.revents().is_empty());
                     let mut next = |there: bool| there && ready.next().unwrap_or(false);

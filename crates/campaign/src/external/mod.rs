@@ -8,6 +8,7 @@ mod child;
 mod child;
 mod function;
 mod inputs;
+mod named_file;
 mod patience;
 mod processes;
 mod program;

@@ -8,7 +8,7 @@ use std::{
 use super::trouble::Trouble;
 use crate::stop::is_stopped;
 
-/// Longest wait without a look at whether the campaign is stopped.
+/// Longest wait without a look at whether the campaign is stopped, or the process has ended.
 const LOOK: Duration = Duration::from_millis(50);
 
 /// How long a process is waited for.
@@ -31,7 +31,7 @@ impl<'a> Patience<'a> {
         if left.is_zero() || is_stopped(self.stop) {
             return None;
         }
-        Some(self.stop.map_or(left, |_| left.min(LOOK)))
+        Some(left.min(LOOK))
     }
 
     /// Why it is over, of a process with this last line on standard error.

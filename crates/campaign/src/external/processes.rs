@@ -4,13 +4,14 @@ use std::{
     fmt, fs,
     io::{self, ErrorKind, Read},
     path::Path,
-    sync::{Mutex, PoisonError},
+    sync::{Mutex, OnceLock, PoisonError},
     time::{Duration, Instant},
 };
 
 use super::{
     LIMIT,
     child::Child,
+    named_file::NamedFile,
     program::{Program, ProgramError},
     tail::shown,
     trouble::Trouble,
@@ -31,6 +32,10 @@ pub(super) struct Processes {
     /// Processes that wait to be asked.
     idle: Mutex<Vec<Child>>,
     unasked: Mutex<Option<Unasked>>,
+    /// The files that the command names, as they were when they were first looked at.
+    files: OnceLock<Vec<NamedFile>>,
+    /// Why the temporary folder of a run could not be used, if one could not.
+    no_folder: Mutex<Option<String>>,
 }
 
 /// What processes of a simulator wrote to standard output that nobody had asked for. Each was ended for it before its next run,
@@ -70,7 +75,33 @@ impl Unasked {
 impl Processes {
     /// Which are started when they are needed.
     pub(super) fn new(program: Program) -> Self {
-        Self { program, idle: Mutex::default(), unasked: Mutex::default() }
+        Self {
+            program,
+            idle: Mutex::default(),
+            unasked: Mutex::default(),
+            files: OnceLock::new(),
+            no_folder: Mutex::default(),
+        }
+    }
+
+    /// The files that the command names: as they are if they are looked at for the first time, and from then on as they were.
+    pub(super) fn files(&self) -> &[NamedFile] {
+        self.files.get_or_init(|| self.program.named_files().collect())
+    }
+
+    /// Why runs that were done since then do not count: a file of the command has changed, or there is no temporary folder, of which no
+    /// run is to blame.
+    pub(super) fn fault(&self) -> Option<String> {
+        if let Some(problem) = self.no_folder.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        {
+            return Some(problem);
+        }
+        let changed = self.files().iter().find(|file| !file.is_as_it_was())?;
+        let word = self.program.words()[changed.place].to_string_lossy();
+        Some(format!(
+            "the file {word:?}, which the command of the simulator names, was changed while runs were done: runs of both would not go \
+             together"
+        ))
     }
 
     /// Makes certain that the command can be started: starts the first process, or finds the program if it is to be started
@@ -154,10 +185,23 @@ impl Processes {
         self.unasked.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
+    /// Notes that the temporary folder of a run cannot be used.
+    fn no_folder(&self, error: io::Error) -> Trouble {
+        let place = std::env::temp_dir();
+        // Without the name of the folder, which is another one each time.
+        let error = error.raw_os_error().map_or(error, io::Error::from_raw_os_error);
+        let problem =
+            format!("a temporary folder for a run cannot be used in {}: {error}", place.display());
+        *self.no_folder.lock().unwrap_or_else(PoisonError::into_inner) = Some(problem);
+        Trouble::Files(error)
+    }
+
     /// Starts a process for one run, which reads and writes files.
     fn ask_with_files(&self, request: &[u8]) -> Result<Vec<u8>, Trouble> {
-        let folder = tempfile::tempdir().map_err(Trouble::Files)?;
-        fs::write(folder.path().join("input.json"), request).map_err(Trouble::Files)?;
+        let folder = tempfile::Builder::new().prefix("gyradius-run-").tempdir();
+        let folder = folder.map_err(|error| self.no_folder(error))?;
+        let input = fs::write(folder.path().join("input.json"), request);
+        input.map_err(|error| self.no_folder(error))?;
         let mut child = Child::start_in(&self.program, folder.path()).map_err(Trouble::Start)?;
         child.finish(self.program.patience())?;
         left(&folder.path().join("output.json"))

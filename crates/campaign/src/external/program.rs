@@ -7,8 +7,7 @@ use std::{
     time::Duration,
 };
 
-use super::patience::Patience;
-use crate::hash::sha256_of_file;
+use super::{named_file::NamedFile, patience::Patience};
 
 /// Seconds that a run may take if nothing is said.
 const TIMEOUT_S: f64 = 60.0;
@@ -97,9 +96,14 @@ impl Program {
     /// The places of its words that name files which are there, with the SHA-256 of each file, in hexadecimal: of regular files
     /// alone, for a pipe or a device has no end.
     pub fn files_sha256(&self) -> impl Iterator<Item = (usize, String)> {
+        self.named_files().map(|file| (file.place, file.sha256))
+    }
+
+    /// The files that its words name.
+    pub(super) fn named_files(&self) -> impl Iterator<Item = NamedFile> {
         let words = self.words.iter().map(Path::new).enumerate();
         let files = words.filter(|(_, word)| word.is_absolute() && word.is_file());
-        files.filter_map(|(place, file)| Some((place, sha256_of_file(file).ok()?)))
+        files.filter_map(|(place, file)| NamedFile::new(place, file))
     }
 
     /// How long a run that begins now is waited for.

@@ -277,6 +277,10 @@ impl<I: Inputs> Simulation for ExternalSimulation<'_, I> {
         self.simulator.is_function()
     }
 
+    fn fault(&self) -> Option<String> {
+        self.simulator.fault()
+    }
+
     fn run(&self, runs: Range<u64>, (): &mut (), rows: &mut Table) -> Result<(), TableError> {
         let mut kept = self.simulator.take();
         let mut numbers = Vec::with_capacity(self.drawn.len());

@@ -77,6 +77,24 @@ impl Simulator {
         }
     }
 
+    /// The places of the words of its command that name files which are there, with the SHA-256 of each file, in hexadecimal. They are
+    /// those that were there when this was first asked, or when the first runs were done.
+    pub fn files_sha256(&self) -> impl Iterator<Item = (usize, &str)> {
+        let files = match &self.0 {
+            Way::Processes(processes) => processes.files(),
+            Way::Function(_) => &[],
+        };
+        files.iter().map(|file| (file.place, file.sha256.as_str()))
+    }
+
+    /// Why runs that it did do not count.
+    pub(super) fn fault(&self) -> Option<String> {
+        match &self.0 {
+            Way::Processes(processes) => processes.fault(),
+            Way::Function(_) => None,
+        }
+    }
+
     /// Whether it is a function.
     pub(super) fn is_function(&self) -> bool {
         matches!(self.0, Way::Function(_))

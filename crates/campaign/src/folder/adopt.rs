@@ -5,6 +5,7 @@ use std::{io::Write, path::PathBuf, sync::atomic::AtomicBool};
 
 use super::{
     Folder, FolderError, Problem,
+    area::Area,
     blocks::Blocks,
     hidden::Hidden,
     manifest::{Block, MANIFEST, Manifest, damaged},
@@ -128,6 +129,23 @@ impl Reduced {
         let place = hidden.place().to_owned();
         let (kept, blocks) = published(&place, &hidden.record(what)?.0, identity);
         Ok((!kept.is_all()).then_some(Self { kept, place, blocks }))
+    }
+
+    /// Removes the runs that a command left of this campaign, with this identity, which was killed after it had put in place what is
+    /// kept of them.
+    ///
+    /// # Errors
+    /// They cannot be removed.
+    pub fn settle(&self, identity: &Identity) -> Result<(), FolderError> {
+        let area = Area::of(&self.place);
+        let settled = match area.identity() {
+            Ok(Some(there)) if identity.difference(&there).is_none() => {
+                area.clear().map_err(Problem::from)
+            }
+            Ok(_) => Ok(()),
+            Err(problem) => Err(problem),
+        };
+        settled.map_err(|problem| FolderError { path: self.place.clone(), problem })
     }
 
     /// What was kept.

@@ -18,6 +18,7 @@ mod journal;
 mod looked;
 mod manifest;
 mod name;
+mod problem;
 mod record;
 mod shared;
 #[cfg(test)]
@@ -39,11 +40,11 @@ pub use manifest::{Block, MANIFEST, Manifest};
 pub(crate) use manifest::{RUNS, damaged, is_zero};
 pub use name::HIDDEN;
 use name::{Found, Name, look};
+pub use problem::FolderError;
+pub(crate) use problem::Problem;
 use record::Record;
 pub use shared::Shared;
-pub use told::{begun, missing_runs, told, why_unknown};
-
-use crate::identity::Difference;
+pub use told::{begun, changed, missing_runs, told, told_runs, why_unknown};
 
 /// Says in what a text differs from another.
 type Telling<'a> = Box<dyn Fn(&str) -> Option<String> + 'a>;
@@ -362,6 +363,9 @@ fn check(
             return Err(changed);
         }
         let difference = if known { text().ok() } else { begun };
+        if !mark.below(place).exists() && difference.is_none() && record.has(&mark) {
+            return Err(Problem::Gone { name: mark, what: contents.what });
+        }
         let difference = difference.and_then(|text| (contents.differs)(&text));
         return Err(match difference {
             Some(difference) => Problem::Other { what: contents.what, difference },
@@ -390,105 +394,4 @@ fn unobstructed<'n>(
         }
     }
     Ok(())
-}
-
-/// Why a folder cannot be used. Nothing of the user's has been touched.
-#[derive(Debug, thiserror::Error)]
-#[error("output folder {}: {problem}", path.display())]
-pub struct FolderError {
-    /// As it was given.
-    pub(crate) path: PathBuf,
-    /// What is wrong with it.
-    pub(crate) problem: Problem,
-}
-
-impl FolderError {
-    /// The folder, as it was given.
-    #[must_use]
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// Whether nothing is wrong but that it was told to stop.
-    #[must_use]
-    pub fn is_stopped(&self) -> bool {
-        matches!(self.problem, Problem::Stopped)
-    }
-
-    /// What is wrong with it.
-    #[must_use]
-    pub fn problem(&self) -> String {
-        self.problem.to_string()
-    }
-}
-
-/// What is wrong with a folder.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum Problem {
-    #[error("it cannot be written: {0}")]
-    Io(io::Error),
-    #[error("stopped")]
-    Stopped,
-    #[error("it is not a folder")]
-    NoFolder,
-    #[error("it is a link that leads nowhere")]
-    Link,
-    #[error("something else is being written there")]
-    Busy,
-    #[error(
-        "it already holds another {what} or other files (a copy without the folder {} counts as other files); \
-         choose another folder with --out, or pass --force to replace what a {what} wrote there",
-        HIDDEN
-    )]
-    Occupied { what: &'static str },
-    #[error(
-        "it already holds another {what}: {difference}; choose another folder with --out, or pass \
-         --force to replace what a {what} wrote there"
-    )]
-    Other { what: &'static str, difference: String },
-    #[error(
-        "it holds the finished runs of another campaign that was not completed: {difference}; choose another \
-         folder with --out, or pass --force to drop those runs"
-    )]
-    Unfinished { difference: Difference },
-    #[error(
-        "{name} cannot be written: {problem}. What was finished stays, and the same command goes on"
-    )]
-    Block { name: String, problem: String },
-    #[error(
-        "{name} in it was changed after it was written, and is not replaced; move it elsewhere or \
-         choose another folder with --out"
-    )]
-    Changed { name: Name },
-    #[error(
-        "{name} in it was not written by this program, and is not replaced; move it elsewhere or \
-         choose another folder with --out"
-    )]
-    Foreign { name: Name },
-    #[error("{name} in it is a {is} where this program has a {should}; move it elsewhere")]
-    Kind { name: String, is: &'static str, should: &'static str },
-    #[error("{name} in it is not as this program left it: {problem}; move it elsewhere")]
-    Unknown { name: String, problem: String },
-    #[error(
-        "a command was killed while it replaced the files there, and neither the old nor the new ones \
-         can be put in place: {problem}. All of them are kept in .gyradius; once the cause is mended, \
-         the next command goes on"
-    )]
-    Stuck { problem: Box<Problem> },
-    #[error(transparent)]
-    Name(#[from] name::NameError),
-    #[error("its record cannot be written: {0}")]
-    Json(serde_json::Error),
-}
-
-impl From<serde_json::Error> for Problem {
-    fn from(error: serde_json::Error) -> Self {
-        Self::Json(error)
-    }
-}
-
-impl From<io::Error> for Problem {
-    fn from(error: io::Error) -> Self {
-        Self::Io(error)
-    }
 }

@@ -2,7 +2,9 @@
 
 use std::{
     cmp::Reverse,
-    fs, iter,
+    fs,
+    io::ErrorKind,
+    iter,
     ops::Range,
     path::{Path, PathBuf},
 };
@@ -15,7 +17,7 @@ use super::{
     name::{Found, HIDDEN, Name, look},
     record::Record,
 };
-use crate::{identity::Identity, kept::Kept};
+use crate::{identity::Identity, kept::Kept, runs::Runs, table::Table};
 
 /// The text from which the unfinished campaign in a folder was begun, if there is one.
 #[must_use]
@@ -88,6 +90,49 @@ pub fn told(
     blocks.sort_by(|a, b| a.model.cmp(&b.model).then_with(|| order(a).cmp(&order(b))));
     blocks.dedup_by(|a, b| (&a.model, a.first_run) == (&b.model, b.first_run));
     Ok(blocks)
+}
+
+/// The runs of a model in blocks of a complete campaign in a folder, where they are read from; `empty` is a table of the model and its
+/// columns.
+#[must_use]
+pub fn told_runs(place: &Path, blocks: &[Block], empty: &Table) -> Runs {
+    let own = blocks.iter().filter(|block| block.model == empty.model());
+    Runs::new(
+        empty,
+        own.map(|block| (block.range(), place.join(block.name()))).collect(),
+        Vec::new(),
+    )
+}
+
+/// The first of these files in a folder that is not as this program wrote it, and what became of it, in words. Nothing is known of a copy
+/// without the hidden folder, of one that others may not read, and of a file that was not written.
+///
+/// # Errors
+/// The file that tells what was written there cannot be read.
+pub fn changed(place: &Path, what: &str, names: &[&str]) -> Result<Option<String>, FolderError> {
+    let failed = |problem: Problem| FolderError { path: place.to_owned(), problem };
+    let record = match Hidden::record_of(place, what) {
+        Ok((record, _)) => record,
+        Err(Problem::Io(error))
+            if matches!(error.kind(), ErrorKind::PermissionDenied | ErrorKind::NotADirectory) =>
+        {
+            return Ok(None);
+        }
+        Err(problem) => return Err(failed(problem)),
+    };
+    let became = |name: &&str| {
+        let own = Name::new(name).ok()?;
+        let written = record.hash(&own)?;
+        match look(place, &own) {
+            Ok(Found::File { hash }) if hash == written => None,
+            Ok(Found::File { .. } | Found::Other { .. }) => {
+                Some(format!("{name} in it was changed after it was written"))
+            }
+            Ok(Found::Nothing) => Some(format!("{name} in it is not there any more")),
+            Err(error) => Some(format!("{name} in it cannot be read: {error}")),
+        }
+    };
+    Ok(names.iter().find_map(became))
 }
 
 /// Why nothing is known of the complete campaign of this identity in a folder, if nothing is.

@@ -39,6 +39,8 @@ fn text(status: &Status, folder: &Path) -> String {
     let missing = &status.missing;
     if status.complete {
         text.push_str("All runs are done and put together.\n");
+    } else if let Some(changed) = &status.changed {
+        let _ = writeln!(text, "The study is not complete: {changed}.");
     } else if missing.is_empty() {
         let _ = writeln!(
             text,

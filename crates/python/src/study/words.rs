@@ -8,6 +8,7 @@ pub(super) fn in_keywords(error: &StudyError) -> String {
     let text = error.to_string();
     match error {
         StudyError::Folder { path, .. }
+        | StudyError::ReadOnly { path, .. }
         | StudyError::Room { path, .. }
         | StudyError::Reduced { path, .. } => {
             // In a path anything may stand.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::{draws::SimulatorDraws, scenario::SimulatorScenario};
 use crate::{
-    ResultsError, ScenarioError,
+    ResultsError, ScenarioError, results,
     scenario::{read_file, scenario_file},
     unfinished::unfinished,
 };
@@ -26,10 +26,15 @@ impl SimulatorScenario {
     /// The scenario of the study in a folder, also if it is not put together yet; or of a scenario file.
     ///
     /// # Errors
-    /// As [`read`](Self::read); a study that is not put together was begun by another version.
+    /// As [`read`](Self::read); the study in the folder is by another version, or was changed after it was written.
     pub fn of_study(path: &Path) -> Result<Self, ResultsError> {
-        let begun = if path.is_dir() { unfinished(path)? } else { None };
-        Ok(begun.map_or_else(|| Self::read(path), Ok)?)
+        if !path.is_dir() {
+            return Ok(Self::read(path)?);
+        }
+        match unfinished(path)? {
+            Some(scenario) => Ok(scenario),
+            None => Ok(results::read::<Self>(path)?.into_parts().0),
+        }
     }
 
     /// Reads a scenario from the text of a file that is in a folder.

@@ -1,7 +1,8 @@
 //! A scenario of a simulator, checked: the command, what is uncertain, how often.
 
 use gyradius_campaign::{
-    Column, Kept, Program, ProgramError, Requirement, SimulatorFunction, StoppingRule, Table, Until,
+    Column, Kept, Program, ProgramError, Requirement, Simulator, SimulatorFunction, StoppingRule,
+    Table, Until,
 };
 use gyradius_dispersion::{InertiaLaw, ModelKind, ScalarLaw};
 use std::{
@@ -70,7 +71,9 @@ impl SimulatorScenario {
         if !is_function && file.simulation.files_sha256.is_none() {
             let given = file.simulation.folder.clone().unwrap_or_else(|| folder.to_owned());
             file.simulation.folder = Some(std::path::absolute(&given).unwrap_or(given));
-            file.simulation.files_sha256 = Some(files_sha256(&file, &program(&file)?));
+            let program = program(&file)?;
+            let files = program.files_sha256();
+            file.simulation.files_sha256 = Some(by_words(&file, files));
         }
         file.bodies.iter_mut().for_each(|body| body.dispersion.fill(body.law.as_ref()));
         let mut list = List::of(size.fleet());
@@ -197,8 +200,9 @@ impl SimulatorScenario {
     }
 
     /// That the files that the command names are those that runs were done with.
-    pub(super) fn check_files(&self, program: &Program) -> Result<(), ScenarioError> {
-        let now = files_sha256(&self.file, program);
+    pub(super) fn check_files(&self, simulator: &Simulator) -> Result<(), ScenarioError> {
+        let files = simulator.files_sha256();
+        let now = by_words(&self.file, files.map(|(place, sha256)| (place, sha256.to_owned())));
         let before = self.file.simulation.files_sha256.clone().unwrap_or_default();
         let words = before.keys().chain(now.keys());
         let Some(word) = words.into_iter().find(|word| before.get(*word) != now.get(*word)) else {
@@ -303,10 +307,9 @@ impl SimulatorScenario {
     }
 }
 
-/// The SHA-256 of the files that a command names, by its words.
-fn files_sha256(file: &File, program: &Program) -> BTreeMap<String, String> {
+/// The SHA-256 of the files that a command names, by its words instead of their places.
+fn by_words(file: &File, files: impl Iterator<Item = (usize, String)>) -> BTreeMap<String, String> {
     let words = file.simulation.command.as_deref().unwrap_or_default();
-    let files = program.files_sha256();
     files.filter_map(|(place, sha256)| Some((words.get(place)?.clone(), sha256))).collect()
 }
 

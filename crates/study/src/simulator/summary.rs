@@ -183,8 +183,8 @@ impl Subject for SimulatorScenario {
             let absent = ScenarioError::field("simulation.function", not_given(name));
             return Err(self.located(absent));
         }
-        if let Some(program) = simulator.program() {
-            self.check_files(program).map_err(|error| self.located(error))?;
+        if simulator.program().is_some() {
+            self.check_files(simulator).map_err(|error| self.located(error))?;
         }
         let started = simulator.check();
         started.map_err(|error| self.located(ScenarioError::field("simulation.command", error)))

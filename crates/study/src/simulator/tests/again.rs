@@ -9,7 +9,10 @@ use std::{
 };
 
 use super::{SimulatorReplay, SimulatorScenario, folder, scenario, uniform};
-use crate::{CampaignError, Kept, Notice, Options, ReplayError, Rows, Status, StudyError, Which};
+use crate::{
+    CampaignError, Kept, Notice, Options, ReplayError, Rows, Status, StudyError, Which,
+    read_only::complete_study,
+};
 
 /// Runs that failed for a reason that is gone are done again, and no other: of a study that is complete, and of one that was
 /// stopped. Until the new blocks are there, the old ones count.
@@ -245,4 +248,71 @@ done
     let refused = SimulatorReplay::new(&without, None, flight).unwrap_err().to_string();
     let expected = "vehicle 1, flight 2: the scenario has no vehicles: name the run by its number";
     assert_eq!(refused, expected);
+}
+
+/// A file of the command that changes while runs are done ends the campaign: no run of another simulator is kept, the same study goes
+/// on once the file is as it was, and to write the same again is no change.
+#[test]
+fn a_simulator_that_changes_meanwhile_ends_the_campaign() {
+    const OTHER: &str =
+        "while read -r line; do echo '{\"outputs\":{\"y\":-1}}'; done # much else\n";
+    let folder = folder();
+    let script = folder.path().join("answer.sh");
+    let before = fs::read(&script).unwrap();
+    let scenario = scenario(&uniform(), folder.path()).with_runs(900).unwrap();
+    let options =
+        |name: &str| Options { threads: Some(2), ..Options::to(folder.path().join(name)) };
+    let one_at_a_time = std::sync::Mutex::new(());
+    let put = |content: &[u8]| {
+        let _one = one_at_a_time.lock().unwrap();
+        fs::write(folder.path().join("new"), content).unwrap();
+        fs::rename(folder.path().join("new"), &script).unwrap();
+    };
+    let well = scenario.study(&options("well"), &|_| put(&before), &|_| {}).unwrap();
+    let changing = |done: u64| {
+        if done > 300 {
+            put(OTHER.as_bytes());
+        }
+    };
+    let error = scenario.study(&options("changed"), &changing, &|_| {}).unwrap_err();
+    assert!(matches!(error, StudyError::Campaign(CampaignError::Fault { .. })), "{error}");
+    let said = error.to_string();
+    assert!(
+        said.contains("answer.sh\", which the command") && said.contains("was changed"),
+        "{said}"
+    );
+    let status = Status::read(&folder.path().join("changed"));
+    assert!(status.as_ref().map_or(true, |status| !status.complete), "{status:?}");
+    // As it stands, it is not the simulator of these runs.
+    let refused = scenario.study(&options("changed"), &|_| {}, &|_| {}).unwrap_err().to_string();
+    assert!(refused.contains("was changed after"), "{refused}");
+    put(&before);
+    let after = scenario.study(&options("changed"), &|_| {}, &|_| {}).unwrap();
+    assert_eq!(after.rows(), well.rows());
+}
+
+/// A complete study is read where nothing can be written: the same rows and the same numbers, unless something of it is not as it was.
+#[test]
+fn a_complete_study_is_read_without_writing() {
+    let folder = folder();
+    let scenario = scenario(&uniform(), folder.path()).with_runs(700).unwrap();
+    for rows in [Rows::All, Rows::None] {
+        let scenario = scenario.clone().with_kept(&Kept::new(rows, None));
+        let options = Options::to(folder.path().join(format!("{rows:?}")));
+        let read = || complete_study(&scenario, &options).unwrap();
+        assert!(read().is_none());
+        let study = scenario.study(&options, &|_| {}, &|_| {}).unwrap();
+        let there = read().unwrap();
+        assert_eq!(there.rows(), study.rows());
+        assert_eq!(there.summary(), study.summary());
+        let more = scenario.clone().with_runs(800).unwrap();
+        assert!(complete_study(&more, &options).unwrap().is_none());
+        let changed = study.folder().join(if rows == Rows::All {
+            fs::read_dir(study.folder().join("runs/all")).unwrap().next().unwrap().unwrap().path()
+        } else {
+            study.folder().join("summary.json")
+        });
+        fs::write(&changed, "no more").unwrap();
+        assert!(read().is_none());
+    }
 }
