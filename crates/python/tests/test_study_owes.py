@@ -237,3 +237,10 @@ def test_arguments_of_wrong_types_are_named(wrong: dict[str, Any]) -> None:
 def test_scenarios_are_refused_in_the_words_of_python(keys: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         gyradius.study(scenario(**keys), double)
+
+
+def test_a_folder_without_a_name_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ValueError, match=r'^out = "": it must be the name of a folder$'):
+        gyradius.study(scenario(), double, outputs=OUTPUTS, out="")
+    assert not list(tmp_path.iterdir())

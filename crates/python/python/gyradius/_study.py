@@ -390,6 +390,9 @@ def study(
     tell, close = progress_of(progress)
     temporary = None
     if out is not None:
+        if not os.fspath(out):
+            # An empty path would be the current folder.
+            raise ValueError('out = "": it must be the name of a folder')
         place = Path(out)
     if place is None:
         temporary = tempfile.mkdtemp(prefix="gyradius-")
