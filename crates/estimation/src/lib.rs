@@ -64,9 +64,9 @@ pub use rollup::{
 };
 pub use stated_body::StatedBody;
 pub use statements::{
-    Amount, AxesStatement, CentreStatement, MassStatement, MissedBecause, MomentsStatement, Part,
-    ProductsStatement, StatedAmount, StatedAmountError, StatedMass, StatedModel, StatementError,
-    StatementWarning, Statements,
+    Amount, AmountProblem, AxesStatement, CentreStatement, MassStatement, MissedBecause,
+    MomentsStatement, Part, ProductsStatement, StatedAmount, StatedAmountError, StatedMass,
+    StatedModel, StatementError, StatementWarning, Statements,
 };
 
 // Part of the interface, in the version that it takes and gives.

@@ -21,8 +21,7 @@ fn said<T: DeserializeOwned, E: Display>(
     let Some(given) = given else { return Ok(None) };
     let statement = match json::read(given)? {
         Value::String(text) => {
-            let amount =
-                read(&text).map_err(|error| refused(format_args!("{part} = {text:?}: {error}")))?;
+            let amount = read(&text).map_err(refused)?;
             make(amount).map_err(refused)?
         }
         table => serde_json::from_value(table).map_err(|error| {

@@ -1,25 +1,27 @@
 //! What is stated of every link of a robot on the command line, as `--mass 10% --centre 5mm`.
 
 use clap::Args;
-use gyradius_estimation::{Part, StatedAmount, StatementError, Statements};
+use gyradius_estimation::{
+    AmountProblem, Part, StatedAmount, StatedAmountError, StatementError, Statements,
+};
 
 /// What is stated of every link of a robot.
 #[derive(Args, Debug)]
 pub(crate) struct StatedArgs {
     /// Of a robot: the mass, ± 10% or ± 0.2kg; the inertia follows it
-    #[arg(long, value_name = "AMOUNT", allow_hyphen_values = true, value_parser = StatedAmount::mass, help_heading = ROBOTS)]
+    #[arg(long, value_name = "AMOUNT", allow_hyphen_values = true, value_parser = amount(StatedAmount::mass), help_heading = ROBOTS)]
     pub(crate) mass: Option<StatedAmount>,
 
     /// Of a robot: the mass centre along each axis of the link, ± 5mm, or three of them, 5mm,5mm,20mm
-    #[arg(long, value_name = "AMOUNT", allow_hyphen_values = true, value_parser = StatedAmount::centre, help_heading = ROBOTS)]
+    #[arg(long, value_name = "AMOUNT", allow_hyphen_values = true, value_parser = amount(StatedAmount::centre), help_heading = ROBOTS)]
     pub(crate) centre: Option<StatedAmount>,
 
     /// Of a robot: the moments of inertia about the axes of the link, ± 15%, or three of them; what the mass does to them is a part
-    #[arg(long, value_name = "AMOUNT", allow_hyphen_values = true, value_parser = StatedAmount::moments, help_heading = ROBOTS)]
+    #[arg(long, value_name = "AMOUNT", allow_hyphen_values = true, value_parser = amount(StatedAmount::moments), help_heading = ROBOTS)]
     pub(crate) moments: Option<StatedAmount>,
 
     /// Of a robot: the rotation about each principal axis, ± 5deg or ± 0.1rad, or three of them
-    #[arg(long, value_name = "AMOUNT", allow_hyphen_values = true, value_parser = StatedAmount::axes, help_heading = ROBOTS)]
+    #[arg(long, value_name = "AMOUNT", allow_hyphen_values = true, value_parser = amount(StatedAmount::axes), help_heading = ROBOTS)]
     pub(crate) axes: Option<StatedAmount>,
 
     /// Of a robot: how many standard deviations ± stands for in all of these
@@ -29,6 +31,13 @@ pub(crate) struct StatedArgs {
 
 /// Under which the help has what is for robots alone.
 pub(crate) const ROBOTS: &str = "Of robots (URDF, MJCF, SDF)";
+
+/// Reads what follows an option: `clap` says itself which text of which option is refused.
+fn amount(
+    read: fn(&str) -> Result<StatedAmount, StatedAmountError>,
+) -> impl Fn(&str) -> Result<StatedAmount, AmountProblem> + Clone + Send + Sync {
+    move |text| read(text).map_err(|refused| refused.problem)
+}
 
 impl StatedArgs {
     /// Whether anything is stated.

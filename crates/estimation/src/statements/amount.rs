@@ -1,11 +1,13 @@
 //! Amounts with units in text, as `10%`, `5mm` or `1deg,1deg,3deg`, and what they state of a body.
 
 use crate::{
-    Amount, AxesStatement, CentreStatement, MassStatement, MomentsStatement, ProductsStatement,
-    StatementError,
+    Amount, AxesStatement, CentreStatement, MassStatement, MomentsStatement, Part,
+    ProductsStatement, StatementError,
 };
 
 /// One number with its unit, or three with commas between them: what ± stands for in a statement.
+///
+/// It is an amount of one part, as which it was read, and states nothing of another.
 ///
 /// ```
 /// use gyradius_estimation::{StatedAmount, StatedBody, Statements};
@@ -22,6 +24,9 @@ use crate::{
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StatedAmount {
+    /// Of what it was read.
+    part: Part,
+    /// In %, or in the unit of the part's statement.
     values: [f64; 3],
     is_percent: bool,
 }
@@ -32,7 +37,7 @@ impl StatedAmount {
     /// # Errors
     /// The text is not such an amount; the error says what must be written.
     pub fn mass(text: &str) -> Result<Self, StatedAmountError> {
-        amounts(text, &[PERCENT, ("kg", Some(1.0)), ("g", Some(1e-3))], 1)
+        amounts(Part::Mass, text, &[PERCENT, ("kg", Some(1.0)), ("g", Some(1e-3))], 1)
     }
 
     /// Of a mass centre along the body axes: `mm`, `cm` or `m`.
@@ -40,7 +45,7 @@ impl StatedAmount {
     /// # Errors
     /// The text is not such an amount; the error says what must be written.
     pub fn centre(text: &str) -> Result<Self, StatedAmountError> {
-        amounts(text, &[("mm", Some(1e-3)), ("cm", Some(1e-2)), ("m", Some(1.0))], 3)
+        amounts(Part::Centre, text, &[("mm", Some(1e-3)), ("cm", Some(1e-2)), ("m", Some(1.0))], 3)
     }
 
     /// Of the moments of inertia about the body axes: `%` or `kgm2`, also written `kg·m²`.
@@ -48,7 +53,7 @@ impl StatedAmount {
     /// # Errors
     /// The text is not such an amount; the error says what must be written.
     pub fn moments(text: &str) -> Result<Self, StatedAmountError> {
-        amounts(text, &[&[PERCENT], &INERTIA[..]].concat(), 3)
+        amounts(Part::Moments, text, &[&[PERCENT], &INERTIA[..]].concat(), 3)
     }
 
     /// Of the products of inertia I₁₂, I₁₃, I₂₃: `kgm2`, also written `kg·m²`.
@@ -56,7 +61,7 @@ impl StatedAmount {
     /// # Errors
     /// The text is not such an amount; the error says what must be written.
     pub fn products(text: &str) -> Result<Self, StatedAmountError> {
-        amounts(text, &INERTIA, 3)
+        amounts(Part::Products, text, &INERTIA, 3)
     }
 
     /// Of the rotation about the principal axes: `deg` or `rad`; `°` is `deg`.
@@ -65,33 +70,36 @@ impl StatedAmount {
     /// The text is not such an amount; the error says what must be written.
     pub fn axes(text: &str) -> Result<Self, StatedAmountError> {
         let units = [("deg", Some(1.0)), ("°", Some(1.0)), ("rad", Some(1_f64.to_degrees()))];
-        amounts(text, &units, 3)
+        amounts(Part::Axes, text, &units, 3)
     }
 
-    /// States it of the mass, as so many standard deviations; only what [`mass`](Self::mass) has read makes sense.
+    /// States it of the mass, as so many standard deviations.
     ///
     /// # Errors
-    /// The number is not allowed.
+    /// The number is not allowed, or [`mass`](Self::mass) has not read it.
     pub fn mass_statement(self, sigmas: f64) -> Result<MassStatement, StatementError> {
+        self.of(Part::Mass)?;
         match self.is_percent {
             true => MassStatement::percent(self.values[0], sigmas),
             false => MassStatement::kg(self.values[0], sigmas),
         }
     }
 
-    /// States it of the mass centre: see [`centre`](Self::centre).
+    /// States it of the mass centre.
     ///
     /// # Errors
-    /// A number is not allowed.
+    /// A number is not allowed, or [`centre`](Self::centre) has not read them.
     pub fn centre_statement(self, sigmas: f64) -> Result<CentreStatement, StatementError> {
+        self.of(Part::Centre)?;
         CentreStatement::new(self.values, sigmas, [0.0; 3])
     }
 
-    /// States it of the moments: see [`moments`](Self::moments).
+    /// States it of the moments.
     ///
     /// # Errors
-    /// A number is not allowed.
+    /// A number is not allowed, or [`moments`](Self::moments) has not read them.
     pub fn moments_statement(self, sigmas: f64) -> Result<MomentsStatement, StatementError> {
+        self.of(Part::Moments)?;
         let amount = match self.is_percent {
             true => Amount::Percent(self.values),
             false => Amount::Absolute(self.values),
@@ -99,27 +107,58 @@ impl StatedAmount {
         MomentsStatement::new(amount, sigmas)
     }
 
-    /// States it of the products: see [`products`](Self::products).
+    /// States it of the products.
     ///
     /// # Errors
-    /// A number is not allowed.
+    /// A number is not allowed, or [`products`](Self::products) has not read them.
     pub fn products_statement(self, sigmas: f64) -> Result<ProductsStatement, StatementError> {
+        self.of(Part::Products)?;
         ProductsStatement::new(self.values, sigmas)
     }
 
-    /// States it of the axes, about each: see [`axes`](Self::axes).
+    /// States it of the axes, about each.
     ///
     /// # Errors
-    /// A number is not allowed.
+    /// A number is not allowed, or [`axes`](Self::axes) has not read them.
     pub fn axes_statement(self, sigmas: f64) -> Result<AxesStatement, StatementError> {
+        self.of(Part::Axes)?;
         AxesStatement::each(self.values, sigmas)
+    }
+
+    /// Refuses it if it is of another part, whose numbers would be taken in the wrong unit.
+    fn of(self, part: Part) -> Result<(), StatementError> {
+        let Self { part: read_of, values, is_percent } = self;
+        if read_of == part {
+            return Ok(());
+        }
+        let unit = match (is_percent, read_of) {
+            (true, _) => "%",
+            (false, Part::Mass) => "kg",
+            (false, Part::Centre) => "m",
+            (false, Part::Moments | Part::Products) => "kg·m²",
+            (false, Part::Axes) => "deg",
+        };
+        Err(StatementError::OtherPart { part, read_of, values, unit })
     }
 }
 
-/// Why a text is not an amount with its unit. The text itself is told by who has read it.
+/// A text that is not an amount with its unit.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{part} = {text:?}: {problem}")]
+#[non_exhaustive]
+pub struct StatedAmountError {
+    /// Of what it should be an amount.
+    pub part: Part,
+    /// The text.
+    pub text: String,
+    /// What is wrong with it.
+    pub problem: AmountProblem,
+}
+
+/// Why a text is not an amount with its unit, for who says himself which text, as a command line does.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum StatedAmountError {
+pub enum AmountProblem {
     /// There are neither one nor as many amounts as there may be.
     #[error("it must be one number with its unit{}", or_more(*most))]
     Count {
@@ -155,32 +194,44 @@ const PERCENT: Unit = ("%", None);
 const INERTIA: [Unit; 3] = [("kgm2", Some(1.0)), ("kg·m²", Some(1.0)), ("kg m²", Some(1.0))];
 
 /// One amount, or as many as there may be, with commas between them.
-fn amounts(text: &str, units: &[Unit], most: usize) -> Result<StatedAmount, StatedAmountError> {
+fn amounts(
+    part: Part,
+    text: &str,
+    units: &[Unit],
+    most: usize,
+) -> Result<StatedAmount, StatedAmountError> {
+    match read(text, units, most) {
+        Ok((values, is_percent)) => Ok(StatedAmount { part, values, is_percent }),
+        Err(problem) => Err(StatedAmountError { part, text: text.to_owned(), problem }),
+    }
+}
+
+/// The numbers in the units of statements, and whether they are in percent.
+fn read(text: &str, units: &[Unit], most: usize) -> Result<([f64; 3], bool), AmountProblem> {
     let parts: Vec<&str> = text.split(',').collect();
     if parts.len() != 1 && parts.len() != most {
-        return Err(StatedAmountError::Count { most });
+        return Err(AmountProblem::Count { most });
     }
     let mut read = Vec::with_capacity(most);
     for part in parts {
         let part = part.trim().trim_start_matches('±').trim_start();
         let unit = units.iter().find(|unit| part.ends_with(unit.0));
-        let allowed =
-            || StatedAmountError::Unit { allowed: units.iter().map(|unit| unit.0).collect() };
+        let allowed = || AmountProblem::Unit { allowed: units.iter().map(|unit| unit.0).collect() };
         let (unit, factor) = unit.ok_or_else(allowed)?;
         let number = part.strip_suffix(unit).unwrap_or(part).trim_end();
         let number: f64 = number.parse().map_err(|_| allowed())?;
         if !(number >= 0.0 && number.is_finite()) {
-            return Err(StatedAmountError::Number { value: number });
+            return Err(AmountProblem::Number { value: number });
         }
         read.push((number * factor.unwrap_or(1.0), factor.is_none()));
     }
     let is_percent = read[0].1;
     if read.iter().any(|one| one.1 != is_percent) {
-        return Err(StatedAmountError::Mixed);
+        return Err(AmountProblem::Mixed);
     }
     // The constructors of the statements check how large the numbers are.
     let values = std::array::from_fn(|i| read.get(i).unwrap_or(&read[0]).0);
-    Ok(StatedAmount { values, is_percent })
+    Ok((values, is_percent))
 }
 
 #[cfg(test)]
@@ -201,9 +252,9 @@ mod tests {
         assert!((values(StatedAmount::axes("0.1rad"))[0].to_radians() - 0.1).abs() < 1e-16);
         assert_eq!(values(StatedAmount::moments("1e-3kgm2,1kgm2,2kgm2")), [1e-3, 1.0, 2.0]);
         assert_eq!(values(StatedAmount::products("5 kgm2")), [5.0; 3]);
-        let count = |most| StatedAmountError::Count { most };
-        let unit = |allowed: &[&'static str]| StatedAmountError::Unit { allowed: allowed.to_vec() };
-        let number = |value| StatedAmountError::Number { value };
+        let count = |most| AmountProblem::Count { most };
+        let unit = |allowed: &[&'static str]| AmountProblem::Unit { allowed: allowed.to_vec() };
+        let number = |value| AmountProblem::Number { value };
         let (masses, lengths) = (unit(&["%", "kg", "g"]), unit(&["mm", "cm", "m"]));
         let angles = unit(&["deg", "°", "rad"]);
         let inertias = unit(&["kgm2", "kg·m²", "kg m²"]);
@@ -214,7 +265,7 @@ mod tests {
             (StatedAmount::centre, "5", lengths.clone()),
             (StatedAmount::centre, "5%", lengths),
             (StatedAmount::centre, "5mm,5mm", count(3)),
-            (StatedAmount::moments, "5%,1kgm2,1kgm2", StatedAmountError::Mixed),
+            (StatedAmount::moments, "5%,1kgm2,1kgm2", AmountProblem::Mixed),
             (StatedAmount::axes, "five deg", angles.clone()),
             (StatedAmount::axes, "", angles),
             (StatedAmount::products, "5%", inertias.clone()),
@@ -223,9 +274,67 @@ mod tests {
             (StatedAmount::centre, "infmm", number(f64::INFINITY)),
             (StatedAmount::axes, "1deg,-1deg,1deg", number(-1.0)),
         ] {
-            assert_eq!(read(text).unwrap_err(), expected, "{text}");
+            let refused = read(text).unwrap_err();
+            assert_eq!((refused.text.as_str(), refused.problem), (text, expected), "{text}");
         }
-        let refused = StatedAmount::mass("nan%").unwrap_err();
-        assert!(matches!(refused, StatedAmountError::Number { value } if value.is_nan()));
+        let refused = StatedAmount::mass("nan%").unwrap_err().problem;
+        assert!(matches!(refused, AmountProblem::Number { value } if value.is_nan()));
+    }
+
+    #[test]
+    fn what_is_refused_is_told_with_its_part() {
+        for (read, text, told) in [
+            (
+                StatedAmount::mass as fn(&str) -> _,
+                "5mm",
+                r#"mass = "5mm": it must be a number and its unit, % or kg or g"#,
+            ),
+            (StatedAmount::mass, "-5kg", r#"mass = "-5kg": it must be finite and not negative"#),
+            (
+                StatedAmount::axes,
+                "1deg,2deg",
+                r#"axes = "1deg,2deg": it must be one number with its unit, or 3 with commas between them"#,
+            ),
+            (
+                StatedAmount::moments,
+                "5%,1kgm2,1kgm2",
+                r#"moments = "5%,1kgm2,1kgm2": percent and another unit do not go together"#,
+            ),
+        ] {
+            assert_eq!(read(text).unwrap_err().to_string(), told);
+        }
+    }
+
+    /// Every amount of every unit, of every part: it states something of its own alone.
+    #[test]
+    fn an_amount_states_nothing_of_another_part() {
+        let state: [(Part, fn(StatedAmount) -> Option<StatementError>); 5] = [
+            (Part::Mass, |amount| amount.mass_statement(1.0).err()),
+            (Part::Centre, |amount| amount.centre_statement(1.0).err()),
+            (Part::Moments, |amount| amount.moments_statement(1.0).err()),
+            (Part::Products, |amount| amount.products_statement(1.0).err()),
+            (Part::Axes, |amount| amount.axes_statement(1.0).err()),
+        ];
+        for (amount, own, unit) in [
+            (StatedAmount::mass("10%"), Part::Mass, "%"),
+            (StatedAmount::mass("10g"), Part::Mass, "kg"),
+            (StatedAmount::centre("5mm"), Part::Centre, "m"),
+            (StatedAmount::moments("10%"), Part::Moments, "%"),
+            (StatedAmount::moments("1kgm2"), Part::Moments, "kg·m²"),
+            (StatedAmount::products("1kgm2"), Part::Products, "kg·m²"),
+            (StatedAmount::axes("2deg"), Part::Axes, "deg"),
+        ] {
+            let amount = amount.unwrap();
+            for (part, refused) in state.map(|(part, state)| (part, state(amount))) {
+                let (read_of, values) = (own, amount.values);
+                let other = StatementError::OtherPart { part, read_of, values, unit };
+                assert_eq!(refused, (part != own).then_some(other), "{part} of {own}");
+            }
+        }
+        let refused = StatedAmount::mass("10%").unwrap().axes_statement(1.0).unwrap_err();
+        assert_eq!(
+            refused.to_string(),
+            "axes: an amount of the axes is needed, and [10.0, 10.0, 10.0] % was read as one of the mass"
+        );
     }
 }

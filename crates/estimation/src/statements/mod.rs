@@ -20,7 +20,7 @@ use diagnosis::{Context, Outcome};
 use scatter::Body;
 use task::{Asked, Task};
 
-pub use amount::{StatedAmount, StatedAmountError};
+pub use amount::{AmountProblem, StatedAmount, StatedAmountError};
 pub use parts::{
     Amount, AxesStatement, CentreStatement, MassStatement, MomentsStatement, Part,
     ProductsStatement, StatementError,

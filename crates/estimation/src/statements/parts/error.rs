@@ -100,6 +100,20 @@ pub enum StatementError {
         /// The keys that give an amount.
         allowed: &'static str,
     },
+    /// An amount that was read as one of something else.
+    #[error(
+        "{part}: an amount of the {part} is needed, and {values:?} {unit} was read as one of the {read_of}"
+    )]
+    OtherPart {
+        /// What was to be stated.
+        part: Part,
+        /// Of what the amount was read.
+        read_of: Part,
+        /// Its numbers.
+        values: [f64; 3],
+        /// Their unit.
+        unit: &'static str,
+    },
     /// Three rotations where the angle of the whole rotation is stated.
     #[error("axes.deg: there must be one number with of = \"total\", not three")]
     ThreeOfTotal,
