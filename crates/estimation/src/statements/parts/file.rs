@@ -105,6 +105,25 @@ impl TryFrom<String> for Of {
     }
 }
 
+/// The number of another unit that is read as `value` to the bit, which is next to the one that conversion gives if there is one.
+///
+/// There always is one of an angle, for all angles were read in degrees. Of lengths in mm one in forty is stepped over.
+fn in_unit(value: f64, converted: f64, read: impl Fn(f64) -> f64) -> f64 {
+    let (up, down) = (converted.next_up(), converted.next_down());
+    let near = [converted, up, down, up.next_up(), down.next_down()];
+    near.into_iter().find(|near| read(*near) == value).unwrap_or(converted)
+}
+
+/// mm that are read as this length in m.
+fn in_mm(metres: f64) -> f64 {
+    in_unit(metres, 1e3 * metres, |mm| 1e-3 * mm)
+}
+
+/// Degrees that are read as this angle in rad.
+fn in_degrees(angle: f64) -> f64 {
+    in_unit(angle, angle.to_degrees(), f64::to_radians)
+}
+
 gyradius_dispersion::written!(
     MomentsStatement,
     |statement| {
@@ -136,7 +155,7 @@ gyradius_dispersion::written!(
 gyradius_dispersion::written!(
     AxesStatement,
     |statement| {
-        deg: Three = Three::Each(statement.deviations.map(f64::to_degrees)),
+        deg: Three = Three::Each(statement.deviations.map(in_degrees)),
         sigmas: f64 = 1.0,
         #[serde(default)]
         of: Of = Of::EachAxis,
@@ -170,7 +189,7 @@ gyradius_dispersion::written!(
 gyradius_dispersion::written!(
     CentreStatement,
     |statement| {
-        mm: Three = Three::Each(statement.deviations.map(|x| 1e3 * x)),
+        mm: Three = Three::Each(statement.deviations.map(in_mm)),
         sigmas: f64 = 1.0,
         #[serde(default)]
         arm_m: [f64; 3] = statement.arm,
@@ -181,3 +200,79 @@ gyradius_dispersion::written!(
         CentreStatement::with_arm(written.scaled(1e-3)?, arm_m)?
     }
 );
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Statements;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    fn again(statements: &Statements) -> Statements {
+        serde_json::from_str(&serde_json::to_string(statements).unwrap()).unwrap()
+    }
+
+    /// 20,000 of them, from tiny ones to the largest, for any number of deviations.
+    #[test]
+    fn statements_read_back_to_the_bit() {
+        let mut rng = ChaCha8Rng::seed_from_u64(5);
+        let (mut centres, mut off) = (0, 0);
+        for _ in 0..20_000 {
+            let mut three = |most: f64| {
+                let decades = rng.random_range(-12.0..0.0);
+                let share = libm::pow(10.0, decades);
+                [0; 3].map(|_| most * share * rng.random_range(0.0..1.0_f64))
+            };
+            let (percent, kg_m2, deg, metres) = (three(1e2), three(1e3), three(4.5), three(1e3));
+            let (total, sigmas) = (three(7.5)[0], 0.1 + 0.99 * three(10.0)[0]);
+            let each = AxesStatement::each(deg, sigmas).unwrap();
+            let said = Statements {
+                moments: MomentsStatement::new(Amount::Percent(percent), sigmas).ok(),
+                products: ProductsStatement::new(kg_m2, sigmas).ok(),
+                axes: Some(each),
+                mass: MassStatement::kg(kg_m2[0], sigmas).ok(),
+                centre: None,
+            };
+            assert_eq!(again(&said), said);
+            let said = Statements {
+                moments: MomentsStatement::new(Amount::Absolute(kg_m2), sigmas).ok(),
+                axes: AxesStatement::total(total, sigmas).ok(),
+                mass: MassStatement::percent(0.1 * percent[0], sigmas).ok(),
+                ..Statements::default()
+            };
+            assert_eq!(again(&said), said);
+            // As files have it, in mm.
+            let json = format!("{{\"mm\":{:?},\"sigmas\":{sigmas:?}}}", metres.map(|x| 1e3 * x));
+            let read: CentreStatement = serde_json::from_str(&json).unwrap();
+            let of_m = CentreStatement::new(metres, sigmas, [0.1, -0.2, 1e5]).unwrap();
+            for said in [read, of_m] {
+                let back = again(&Statements { centre: Some(said), ..Statements::default() });
+                let pairs = said.deviations.into_iter().zip(back.centre.unwrap().deviations);
+                for (a, b) in pairs {
+                    centres += 1;
+                    off += u32::from(a != b);
+                    assert!((a - b).abs() <= f64::EPSILON * a);
+                }
+                assert_eq!(back.centre.unwrap().arm, said.arm);
+            }
+        }
+        // Lengths that no number of mm is read as.
+        assert!(
+            (0.02..0.03).contains(&(f64::from(off) / f64::from(centres))),
+            "{off} of {centres}"
+        );
+    }
+
+    /// What a person writes is written as he wrote it.
+    #[test]
+    fn round_numbers_stay_round() {
+        for n in 1..=1000 {
+            let mm = 0.1 * f64::from(n);
+            let json = format!("{{\"mm\":[{mm:?},0.0,1.0],\"sigmas\":1.0}}");
+            let read: CentreStatement = serde_json::from_str(&json).unwrap();
+            let written = serde_json::to_value(read).unwrap();
+            let found = written["mm"][0].as_f64().unwrap();
+            assert!((found - mm).abs() <= f64::EPSILON * mm, "{mm} {found}");
+        }
+    }
+}
