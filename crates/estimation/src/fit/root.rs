@@ -142,7 +142,19 @@ impl fmt::Display for RootEstimate {
 }
 
 /// Standard errors of m and s from the observed information in (m, v = s²).
+///
+/// They are computed of roots of about one, for sixth powers of others overflow or vanish. A power of two takes them there and
+/// back, which moves no digit.
 fn folded_errors(samples: &[f64], m: f64, v: f64) -> Option<[f64; 2]> {
+    let (_, exponent) = libm::frexp(v.sqrt());
+    let scaled = |x: f64| libm::ldexp(x, -exponent);
+    let samples: Vec<f64> = samples.iter().map(|k| scaled(*k)).collect();
+    let errors = errors_of_scaled(&samples, scaled(m), scaled(scaled(v)))?;
+    Some(errors.map(|error| libm::ldexp(error, exponent)))
+}
+
+/// The same of roots that scatter by about one.
+fn errors_of_scaled(samples: &[f64], m: f64, v: f64) -> Option<[f64; 2]> {
     let (mut mm, mut mv, mut vv) = (0.0, 0.0, 0.0);
     for &k in samples {
         let t = libm::tanh(m * k / v);
@@ -164,6 +176,7 @@ fn folded_errors(samples: &[f64], m: f64, v: f64) -> Option<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::RngExt;
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
     use rand_distr::{Distribution, Normal};
 
@@ -228,6 +241,40 @@ mod tests {
         let rounded: Vec<f64> = (0..40).map(|i| 1e-4 * f64::from(i % 3)).collect();
         assert_eq!(RootFit::of(&rounded, 1.0).law(), RootEstimate::Constant);
         assert_eq!(RootFit::of(&rounded, 1e-2).law(), RootEstimate::Folded);
+    }
+
+    /// A power of two takes every number with it, to the bit, as far as the squares of roots go.
+    #[test]
+    fn folded_fits_scale() {
+        let mut rng = ChaCha8Rng::seed_from_u64(6);
+        let mut with_errors = 0;
+        for seed in 0..40 {
+            let n = rng.random_range(13..40);
+            let roots = draws(rng.random_range(1.0..5.0), 1.0, n, seed);
+            let fit = RootFit::of(&roots, 1.0);
+            if fit.law() != RootEstimate::Folded {
+                continue;
+            }
+            // As it was computed without a scale.
+            let (mean, variance) = (fit.mean(), fit.deviation() * fit.deviation());
+            for (a, b) in
+                fit.errors().iter().flatten().zip(errors_of_scaled(&roots, mean, variance).unwrap())
+            {
+                assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
+                with_errors += 1;
+            }
+            // K from 1e-300 to 1e300.
+            for exponent in (-498..=498).step_by(83) {
+                let scaled = |x: f64| libm::ldexp(x, exponent);
+                let samples: Vec<f64> = roots.iter().map(|k| scaled(*k)).collect();
+                let found = RootFit::of(&samples, scaled(1.0));
+                assert_eq!(found.law(), RootEstimate::Folded);
+                assert_eq!(found.mean(), scaled(fit.mean()));
+                assert_eq!(found.deviation(), scaled(fit.deviation()));
+                assert_eq!(found.errors(), fit.errors().map(|e| e.map(scaled)), "{exponent}");
+            }
+        }
+        assert!(with_errors > 40, "{with_errors}");
     }
 
     #[test]

@@ -92,3 +92,46 @@ fn axes_turn_about_the_directions_of_the_samples() {
         assert!((found - expected).amax() < 0.25 * expected.amax(), "{case} {found} {expected}");
     }
 }
+
+/// Thin bodies from 1e-200 to 1e140 kg·m²: folded roots have their standard errors at every scale, and the fit reads back.
+#[test]
+fn folded_roots_scale_with_the_bodies() {
+    let mut folded = 0;
+    for seed in 0..6 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let n = rng.random_range(13..40);
+        let bodies: Vec<([f64; 3], UnitQuaternion<f64>)> =
+            (0..n).map(|_| ([0; 3].map(|_| rng.random()), any_attitude(&mut rng))).collect();
+        let scaled = |scale: f64| -> Vec<Inertia> {
+            let body = |(k, q): &([f64; 3], UnitQuaternion<f64>)| {
+                let k = SecondMoments::new(k.map(|k| scale * k)).unwrap();
+                Inertia::from_second_moments(k, q).unwrap()
+            };
+            bodies.iter().map(body).collect()
+        };
+        let fit = PrincipalFit::new(&scaled(1.0)).unwrap();
+        // Powers of four, with which no digit changes, nor the name of an axis in doubt.
+        for power in [-332, -232, -169, -133, -10, 15, 133, 169, 232] {
+            let scale = libm::ldexp(1.0, 2 * power);
+            let found = PrincipalFit::new(&scaled(scale)).unwrap();
+            for (a, b) in fit.roots().iter().zip(found.roots()) {
+                folded += usize::from(b.law() == RootEstimate::Folded && b.errors().is_some());
+                assert_eq!((a.law(), a.errors().is_some()), (b.law(), b.errors().is_some()));
+                let pairs = a.errors().into_iter().flatten().zip(b.errors().into_iter().flatten());
+                for (a, b) in pairs {
+                    assert!((b / (a * scale.sqrt()) - 1.0).abs() < 1e-3, "{scale:e}: {a} {b}");
+                }
+            }
+            #[cfg(feature = "serde")]
+            {
+                let json = serde_json::to_string(&found).unwrap();
+                assert_eq!(
+                    serde_json::from_str::<PrincipalFit>(&json).unwrap(),
+                    found,
+                    "{scale:e}"
+                );
+            }
+        }
+    }
+    assert!(folded > 50, "{folded}");
+}
