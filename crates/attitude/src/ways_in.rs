@@ -16,11 +16,15 @@ impl RadiallyConstrainedGaussian {
     ///
     /// An attitude near the mean is q = m ⊗ exp(δ/2) with the rotation vector δ in body axes; to
     /// first order x = m ⊗ (δ/2, 1), so that Σ = L(m) diag(P/4, s) L(m)ᵀ with L(m) the matrix of
-    /// quaternion multiplication from the left. For small P, δ then has the covariance P whatever
-    /// the radial variance s, of which the sphere removes all but the second lobe: with s below
-    /// about 0.1 there is none, and with an infinite s (Bingham's law) the second lobe weighs as much
-    /// as the first and consists of the same attitudes. This way in is defined for every mean, the
-    /// identity included.
+    /// quaternion multiplication from the left. This way in is defined for every mean, the identity included.
+    ///
+    /// # Radial variance
+    /// Small turns of which the squares are small beside √s too have the covariance P. Since the sphere bends away from
+    /// the plane, an axis with the variance Pᵢ has less of it by the share Pᵢ (tr P + 2Pᵢ)/(32 s), to first order: by 1 %
+    /// where three equal deviations are 4° and s is 4e-4, or 9° and s is 0.01. Turns that s keeps narrower than P are of the
+    /// size of s^¼, whatever P. Of larger s the sphere removes all but the second lobe: with s below about 0.1 there is
+    /// none, and with an infinite s (Bingham's law) the second lobe weighs as much as the first and consists of the same
+    /// attitudes.
     ///
     /// # Errors
     /// The mean is not a unit quaternion, P is not finite, symmetric and positive definite with
@@ -51,7 +55,7 @@ impl RadiallyConstrainedGaussian {
 
     /// Of small turns about the mean, from their covariance P in rad² alone: as
     /// [`from_rotation_covariance`](Self::from_rotation_covariance) with a radial variance of 0.01, of which turns
-    /// that are small know nothing, and with which there is no second lobe.
+    /// of a few degrees know nothing, and with which there is no second lobe.
     ///
     /// # Errors
     /// As for [`from_rotation_covariance`](Self::from_rotation_covariance).
@@ -216,6 +220,50 @@ mod tests {
         assert!((found - p).amax() < 0.012 * p.amax(), "{found}");
         let elsewhere = covariance_of_turns(&law, &mean, false);
         assert!((elsewhere - p).amax() > 0.2 * p.amax(), "{elsewhere}");
+    }
+
+    proptest! {
+        /// How much of P a small radial variance takes, to first order; nothing else depends on it.
+        #[test]
+        fn a_small_radial_variance_narrows_turns(
+            p in prop::array::uniform3(1e-5..1e-2f64),
+            share in 1e-3..0.05f64,
+        ) {
+            let trace: f64 = p.iter().sum();
+            let lost = p.map(|p| p * (trace + 2.0 * p) / 32.0);
+            // The largest share is this one.
+            let s = lost.iter().copied().fold(0.0, f64::max) / share;
+            let turns = |s: f64| {
+                let mean = UnitQuaternion::from_euler_angles(0.7, -0.4, 1.9);
+                let p = Matrix3::from_diagonal(&Vector3::from(p));
+                let law = RadiallyConstrainedGaussian::from_rotation_covariance(mean, p, s).unwrap();
+                law.rotation_covariance().diagonal()
+            };
+            let (narrow, wide) = (turns(s), turns(1e14));
+            for i in 0..3 {
+                let found = 1.0 - narrow[i] / wide[i];
+                prop_assert!((found - lost[i] / s).abs() < 6.0 * share * share + 2.0 * trace * share, "{} {}", found, lost[i] / s);
+                prop_assert!((wide[i] / p[i] - 1.0).abs() < trace);
+            }
+        }
+    }
+
+    /// The limit of a small radial variance: 4u² with the density exp(−u⁴/8s) of u in space, whose mean is
+    /// 4√(8s) Γ(5/4)/Γ(3/4), a third of it about each axis.
+    #[test]
+    fn a_tiny_radial_variance_alone_tells_how_wide_turns_are() {
+        let mean = UnitQuaternion::from_euler_angles(0.7, -0.4, 1.9);
+        for (s, p) in [(1e-8, 1.0), (1e-6, 1.0), (1e-8, 100.0)] {
+            let p = Matrix3::from_diagonal_element(p);
+            let law = RadiallyConstrainedGaussian::from_rotation_covariance(mean, p, s).unwrap();
+            let gammas = libm::tgamma(1.25) / libm::tgamma(0.75);
+            let expected = 4.0 * (8.0 * s).sqrt() * gammas / 3.0;
+            let found = law.rotation_covariance();
+            assert!(
+                (found[(1, 1)] / expected - 1.0).abs() < 6.0 * s.sqrt(),
+                "{s:e}: {found} {expected}"
+            );
+        }
     }
 
     #[test]
