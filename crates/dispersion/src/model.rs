@@ -126,16 +126,17 @@ macro_rules! models {
             }
 
             /// The model of a kind about a nominal body, with the parameters that the kind [`needs`](ModelKind::needs)
-            /// and may have, [`defaults`](ModelKind::defaults). Others are passed over. A principal model has none:
-            /// it is made by [`PrincipalDispersion::new`].
+            /// and may have, [`defaults`](ModelKind::defaults). A principal model has none: it is made by
+            /// [`PrincipalDispersion::new`].
             ///
             /// # Errors
-            /// A parameter is missing or not allowed.
+            /// A parameter is missing or not allowed, or the kind does not take it.
             pub fn about(
                 kind: ModelKind,
                 nominal: &Inertia,
                 given: &ModelParameters,
             ) -> Result<Self, ModelParameterError> {
+                kind.refuse_others(given)?;
                 Ok(match kind {
                     $(ModelKind::$($kind)* => {
                         <$law as NamedModel>::about(nominal, given)?.into()
@@ -185,6 +186,16 @@ impl ModelKind {
     pub const ENTRYWISE: Self = Self::Entries { correlated: false, realizable_only: false };
     /// Six jointly Gaussian entries.
     pub const CORRELATED_ENTRIES: Self = Self::Entries { correlated: true, realizable_only: false };
+
+    /// Refuses the first parameter that this kind does not take.
+    fn refuse_others(self, given: &ModelParameters) -> Result<(), ModelParameterError> {
+        let defaults = self.defaults();
+        let taken: Vec<&str> = self.needs().iter().copied().chain(defaults.given()).collect();
+        let Some(key) = given.given().find(|key| !taken.contains(key)) else { return Ok(()) };
+        let allowed = if taken.is_empty() { "no parameters".to_owned() } else { taken.join(", ") };
+        let problem = format!("a model {:?} takes {allowed}", self.name());
+        Err(ModelParameterError::new(key, &problem))
+    }
 }
 
 impl<K: Into<RootLaw>, A: Into<AxesLaw>> From<PrincipalDispersion<K, A>> for DispersionModel {
@@ -347,8 +358,8 @@ mod tests {
         ]
     }
 
-    /// Of every kind, with every subset of all parameters: it is made if what it needs is there, and else the error
-    /// names what is not. What it does not take changes no draw, and what it does take, each does.
+    /// Of every kind, with every subset of all parameters: it is made if what it needs is there and nothing that it does not
+    /// take, and else the error names what is not, or is. What it does take, each changes the draws.
     #[test]
     fn models_are_made_of_what_they_need_and_take() {
         let nominal = InertiaMatrix::from_entries([5e3, 4e3, 3e3], [20.0, 2.0, -50.0]).unwrap();
@@ -364,14 +375,24 @@ mod tests {
                 let given = (0..all.len()).filter(chosen).map(|i| &all[i]);
                 let given = given.fold(ModelParameters::default(), |sum, more| sum.or(more));
                 let there = |key: &str| given.given().any(|other| other == key);
+                let is_taken = |key: &str| {
+                    kind.needs().contains(&key) || defaults.given().any(|other| other == key)
+                };
+                let other = given.given().find(|key| !is_taken(key));
                 match DispersionModel::about(kind, &nominal, &given) {
                     Ok(model) => {
                         assert!(kind.needs().iter().all(|key| there(key)), "{kind}: {given:?}");
+                        assert_eq!(other, None, "{kind}: {given:?}");
                         assert_eq!(model.kind(), kind);
                         let draw: InertiaMatrix = model.sample(&mut ChaCha8Rng::seed_from_u64(7));
                         let taken: Vec<bool> = defaults.given().map(there).collect();
                         let draw = format!("{draw:?}");
                         assert_eq!(*draws.entry(taken).or_insert(draw.clone()), draw, "{kind}");
+                    }
+                    Err(error) if other.is_some() => {
+                        assert_eq!(other, Some(error.key), "{kind}");
+                        let said = format!("a model \"{kind}\" takes {}", kind.needs().join(", "));
+                        assert!(error.problem.starts_with(&said), "{error}");
                     }
                     Err(error) => {
                         assert!(kind.needs().contains(&error.key) && !there(error.key), "{error}");
@@ -386,6 +407,9 @@ mod tests {
         let refused =
             DispersionModel::about(ModelKind::Principal, &nominal, &ModelParameters::default());
         assert!(refused.unwrap_err().to_string().starts_with("principal: "));
+        let given = ModelParameters { delta: Some(0.1), ..ModelParameters::default() };
+        let refused = DispersionModel::about(ModelKind::Principal, &nominal, &given).unwrap_err();
+        assert_eq!(refused.to_string(), "delta: a model \"principal\" takes no parameters");
     }
 
     /// Of every kind of model: name, promise, moments and draws are those of the kind and of the law inside.

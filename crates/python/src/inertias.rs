@@ -66,13 +66,6 @@ impl InertiaCore {
     fn about(kind: &str, nominal: [f64; 9], parameters: &str) -> PyResult<Self> {
         let kind: ModelKind = kind.parse().map_err(refused)?;
         let Parameters(given) = json::read(parameters)?;
-        let taken: Vec<&str> =
-            kind.needs().iter().copied().chain(kind.defaults().given()).collect();
-        if let Some(key) = given.given().find(|key| !taken.contains(key)) {
-            let allowed =
-                if taken.is_empty() { "no parameters".to_owned() } else { taken.join(", ") };
-            return Err(refused(format_args!("{key}: a model {:?} takes {allowed}", kind.name())));
-        }
         let nominal = Inertia::new(matrix(&nominal)).map_err(refused)?;
         DispersionModel::about(kind, &nominal, &given.or(&kind.defaults()))
             .map(Self)
