@@ -129,10 +129,12 @@ impl ScalarLaw {
         Self(law.into())
     }
 
-    /// The value at a standard normal score: it does not fall where the score rises.
+    /// The value at a standard normal score: it does not fall where the score rises, but for rounding by 1e-14 of itself.
     #[must_use]
     pub fn at_score(&self, z: f64) -> f64 {
-        if z.is_nan() { z } else { self.0.at_score(z) }
+        let x = if z.is_nan() { z } else { self.0.at_score(z) };
+        // Of a law without width that is infinitely far out of nothing.
+        if x.is_nan() && !z.is_nan() { self.0.at_score(0.0) } else { x }
     }
 
     /// The standard normal score of a value, by bisection where it has no formula: the least one at which
@@ -183,7 +185,7 @@ impl ScalarLaw {
             return f64::NAN;
         }
         let x = self.0.quantile(p);
-        // Of a law without width that is infinitely far out of nothing.
+        // As of an infinite score.
         if x.is_nan() { self.at_score(0.0) } else { x }
     }
 
