@@ -5,39 +5,42 @@ use nalgebra::DMatrix;
 /// Rounding that an eigenvalue may carry: coefficients come from files with so many digits.
 const ROUNDING: f64 = 1e-9;
 
-/// Why coefficients are not correlations.
+/// Coefficients that are not correlations.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("pair {}, ({}, {}): {problem}", pair + 1, quantities[0], quantities[1])]
+#[non_exhaustive]
+pub struct CorrelationError {
+    /// Which of the pairs given is wrong, from 0; the message counts from 1.
+    pub pair: usize,
+    /// Its two quantities, by the numbers that were given.
+    pub quantities: [usize; 2],
+    /// What is wrong with it.
+    pub problem: CorrelationProblem,
+}
+
+/// What is wrong with the coefficient of a pair, for who names the pair himself.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum CorrelationError {
-    /// A coefficient is outside [−1, 1] or NaN.
+pub enum CorrelationProblem {
+    /// The coefficient is outside [−1, 1] or NaN.
     #[error("coefficient = {value:?}: it must lie in [-1, 1]")]
     Coefficient {
-        /// Which of those given, from 0.
-        pair: usize,
         /// The coefficient.
         value: f64,
     },
-    /// A quantity with itself, or one that there is not.
+    /// It is of a quantity with itself.
     #[error("it must be of two different quantities")]
-    NoPair {
-        /// Which of those given, from 0.
-        pair: usize,
-    },
-    /// The same two quantities again.
+    NoPair,
+    /// It is of the same two quantities as another.
     #[error("these two have been given a coefficient before")]
-    Twice {
-        /// Which of those given, from 0.
-        pair: usize,
-    },
-    /// Some combination of the quantities would have a negative variance.
+    Twice,
+    /// Some combination of the quantities would have a negative variance, to which this coefficient does most.
     #[error(
         "coefficient = {value:?} contradicts the others: together they have an eigenvalue of \
          {eigenvalue:.3}, and none may be negative"
     )]
     Indefinite {
-        /// The one that does most to it, from 0.
-        pair: usize,
-        /// Its coefficient.
+        /// The coefficient.
         value: f64,
         /// The smallest eigenvalue of the matrix.
         eigenvalue: f64,
@@ -86,15 +89,19 @@ impl Correlation {
     /// A coefficient is outside [−1, 1], a pair is none or comes twice, or the matrix is not positive
     /// semidefinite.
     pub fn new(pairs: &[(usize, usize, f64)]) -> Result<Self, CorrelationError> {
+        let refused = |pair: usize, problem| {
+            let (a, b, _) = pairs[pair];
+            Err(CorrelationError { pair, quantities: [a, b], problem })
+        };
         for (pair, &(a, b, value)) in pairs.iter().enumerate() {
             if !(value.abs() <= 1.0) {
-                return Err(CorrelationError::Coefficient { pair, value });
+                return refused(pair, CorrelationProblem::Coefficient { value });
             }
             if a == b {
-                return Err(CorrelationError::NoPair { pair });
+                return refused(pair, CorrelationProblem::NoPair);
             }
             if pairs[..pair].iter().any(|&(c, d, _)| (c, d) == (a, b) || (d, c) == (a, b)) {
-                return Err(CorrelationError::Twice { pair });
+                return refused(pair, CorrelationProblem::Twice);
             }
         }
         let mut members: Vec<usize> = pairs.iter().flat_map(|&(a, b, _)| [a, b]).collect();
@@ -118,7 +125,7 @@ impl Correlation {
                     (0..pairs.len()).min_by(|a, b| part(&pairs[*a]).total_cmp(&part(&pairs[*b])));
                 let pair = worst.unwrap_or(0);
                 let value = pairs[pair].2;
-                return Err(CorrelationError::Indefinite { pair, value, eigenvalue });
+                return refused(pair, CorrelationProblem::Indefinite { value, eigenvalue });
             }
         }
         let mut rows: Vec<Vec<f64>> = Vec::with_capacity(n);
@@ -316,15 +323,38 @@ mod tests {
         let error = |pairs: &[(usize, usize, f64)]| Correlation::new(pairs).unwrap_err();
         for value in [1.1, -2.0, f64::NAN] {
             let found = error(&[(0, 1, 0.5), (0, 2, value)]);
-            assert!(matches!(found, CorrelationError::Coefficient { pair: 1, .. }), "{found}");
+            assert!(matches!(found.problem, CorrelationProblem::Coefficient { .. }), "{found}");
+            let said = format!("pair 2, (0, 2): coefficient = {value:?}: it must lie in [-1, 1]");
+            assert_eq!(found.to_string(), said);
         }
-        assert_eq!(error(&[(3, 3, 0.5)]), CorrelationError::NoPair { pair: 0 });
-        let twice = error(&[(0, 1, 0.5), (1, 0, 0.5)]);
-        assert_eq!(twice, CorrelationError::Twice { pair: 1 });
+        let itself = error(&[(3, 3, 0.5)]).to_string();
+        assert_eq!(itself, "pair 1, (3, 3): it must be of two different quantities");
+        let twice = error(&[(0, 1, 0.5), (1, 0, 0.5)]).to_string();
+        assert_eq!(twice, "pair 2, (1, 0): these two have been given a coefficient before");
         let contradiction = error(&[(7, 8, 0.1), (0, 1, 0.9), (1, 2, 0.9), (0, 2, -0.9)]);
-        let CorrelationError::Indefinite { pair, eigenvalue, .. } = contradiction else {
+        let CorrelationProblem::Indefinite { eigenvalue, .. } = contradiction.problem else {
             panic!("{contradiction}")
         };
-        assert!(pair >= 1 && (eigenvalue + 0.8).abs() < 1e-12, "{contradiction}");
+        assert!((eigenvalue + 0.8).abs() < 1e-12, "{contradiction}");
+    }
+
+    proptest! {
+        /// Wherever the pairs stand that contradict each other, the one that is named is one of them, with its place, its
+        /// quantities and its coefficient.
+        #[test]
+        fn the_pair_that_contradicts_is_named(
+            before in 0usize..4, size in 0.6..1.0f64, sign in any::<bool>(), start in 0usize..9,
+        ) {
+            let sign = if sign { 1.0 } else { -1.0 };
+            let mut pairs: Vec<(usize, usize, f64)> =
+                (0..before).map(|i| (20 + 2 * i, 21 + 2 * i, 0.5)).collect();
+            let [a, b, c] = [start, start + 1, start + 2];
+            pairs.extend([(a, b, sign * size), (b, c, size), (a, c, -sign * size)]);
+            let error = Correlation::new(&pairs).unwrap_err();
+            let (one, other, value) = pairs[error.pair];
+            prop_assert!(error.pair >= before && error.quantities == [one, other]);
+            let start = format!("pair {}, ({one}, {other}): coefficient = {value:?} contradicts", error.pair + 1);
+            prop_assert!(error.to_string().starts_with(&start), "{}", error);
+        }
     }
 }

@@ -91,7 +91,7 @@ pub use basilisk::{BasiliskDispersion, BasiliskError};
 pub use batch::{BatchAttitudes, BatchRoots};
 pub use columns::ColumnsError;
 pub use correlated_entries::CorrelatedEntries;
-pub use correlation::{Correlation, CorrelationError};
+pub use correlation::{Correlation, CorrelationError, CorrelationProblem};
 pub use entry_moments::{EntryMoments, EntryMomentsError};
 pub use entrywise::{EntrywiseError, EntrywiseGaussian};
 pub use inertia_law::{InertiaLaw, ModelDraw};

@@ -12,7 +12,7 @@ use super::{MassPropertiesModel, TenMoments, TensorLaw, TensorLawError};
 use crate::columns::ColumnsError;
 use crate::roots::FAR;
 use crate::scalar::SAFE_DEVIATION;
-use crate::{Correlation, CorrelationError, InertiaLaw, ScalarLaw, ScalarLawError};
+use crate::{Correlation, CorrelationProblem, InertiaLaw, ScalarLaw, ScalarLawError};
 
 /// What mass times the square of a length may come to at most, so that squares of it do not overflow.
 const MAX_MOMENT: f64 = 1e150;
@@ -140,7 +140,10 @@ impl MassPropertiesLaw {
             let scalar = if *a as usize >= scalars { *a } else { *b };
             return Err(MassPropertiesLawError::NoShape { scalar });
         }
-        let correlation = Correlation::new(&at)?;
+        let correlation = Correlation::new(&at).map_err(|error| {
+            let (a, b, _) = pairs[error.pair];
+            MassPropertiesLawError::Correlation { scalars: [a, b], problem: error.problem }
+        })?;
         let laws: Vec<&ScalarLaw> = self.scalar_laws().collect();
         let copula =
             correlation.among(|scalar| laws.get(scalar).is_some_and(|law| law.deviation() > 0.0));
@@ -418,8 +421,13 @@ pub enum MassPropertiesLawError {
     #[error(transparent)]
     Tensor(#[from] TensorLawError),
     /// The coefficients of correlation.
-    #[error(transparent)]
-    Correlation(#[from] CorrelationError),
+    #[error("correlation of {:?} and {:?}: {problem}", scalars[0], scalars[1])]
+    Correlation {
+        /// The two scalars.
+        scalars: [JointScalar; 2],
+        /// What is wrong with their coefficient.
+        problem: CorrelationProblem,
+    },
     /// A coefficient is of the shape, and the inertia is drawn by a model.
     #[error(
         "correlation with {scalar:?}: the inertia is drawn by a model that has no three scalar laws"

@@ -1,7 +1,7 @@
 //! Laws of single numbers and of vectors, as they stand in a scenario file.
 
 use gyradius_dispersion::{
-    Correlation, CorrelationError, LawUnit, ScalarLaw, ScalarLawForm, ScalarLawFormError,
+    Correlation, CorrelationProblem, LawUnit, ScalarLaw, ScalarLawForm, ScalarLawFormError,
 };
 use serde::{
     Deserialize, Deserializer, Serialize,
@@ -173,20 +173,17 @@ fn covariance(
         }
     }
     if let Err(error) = Correlation::new(&pairs) {
-        let entry = |pair: usize| {
-            let (i, j, _) = pairs[pair];
-            format!("entry ({}, {})", i + 1, j + 1)
-        };
-        return refused(match error {
-            CorrelationError::Coefficient { pair, .. } => {
-                format!("{}: it is larger than its two variances allow", entry(pair))
+        let [i, j] = error.quantities;
+        let entry = format!("entry ({}, {})", i + 1, j + 1);
+        return refused(match error.problem {
+            CorrelationProblem::Coefficient { .. } => {
+                format!("{entry}: it is larger than its two variances allow")
             }
-            CorrelationError::Indefinite { pair, eigenvalue, .. } => format!(
-                "{} contradicts the others: the correlations have an eigenvalue of {eigenvalue:.3}, and \
-                 none may be negative",
-                entry(pair)
+            CorrelationProblem::Indefinite { eigenvalue, .. } => format!(
+                "{entry} contradicts the others: the correlations have an eigenvalue of {eigenvalue:.3}, and \
+                 none may be negative"
             ),
-            other => other.to_string(),
+            other => format!("{entry}: {other}"),
         });
     }
     let law = |i: usize| ScalarLaw::normal(nominal[i], matrix[i][i].sqrt() * unit.size());

@@ -1,6 +1,6 @@
 //! What is uncertain, as it is put together from a scenario file.
 
-use gyradius_dispersion::{Correlation, CorrelationError, JointScalar, LawUnit, ScalarLaw};
+use gyradius_dispersion::{Correlation, CorrelationProblem, JointScalar, LawUnit, ScalarLaw};
 
 use super::{
     ScenarioError,
@@ -278,15 +278,9 @@ impl<T> List<T> {
             }
         }
         let correlation = Correlation::new(&self.pairs).map_err(|error| {
-            let pair = match &error {
-                CorrelationError::Coefficient { pair, .. }
-                | CorrelationError::NoPair { pair }
-                | CorrelationError::Twice { pair }
-                | CorrelationError::Indefinite { pair, .. } => *pair,
-                _ => return ScenarioError::field(CORRELATIONS, error),
-            };
-            let field = match (&error, self.fields[pair].as_str()) {
-                (CorrelationError::NoPair { .. } | CorrelationError::Twice { .. }, field)
+            let (pair, problem) = (error.pair, error.problem);
+            let field = match (problem, self.fields[pair].as_str()) {
+                (CorrelationProblem::NoPair | CorrelationProblem::Twice, field)
                     if field.starts_with(CORRELATIONS) =>
                 {
                     format!("{field}.between")
@@ -296,7 +290,7 @@ impl<T> List<T> {
             };
             let (a, b, _) = self.pairs[pair];
             let (a, b) = (numbers[a].column, numbers[b].column);
-            ScenarioError::field(field, format!("{a:?} and {b:?}: {error}"))
+            ScenarioError::field(field, format!("{a:?} and {b:?}: {problem}"))
         })?;
         let bodies = self.bodies.iter().map(|body| body.joint.clone()).collect();
         let joint = Joint { all: self.all, roots, correlation, bodies };
