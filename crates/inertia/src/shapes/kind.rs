@@ -89,16 +89,18 @@ type Square = (f64, f64);
 impl Kind {
     /// Sizes in range, and in the order that the shape needs.
     pub(super) fn check(&self) -> Result<(), ShapeError> {
-        let size = |field: &'static str, value: f64| {
+        let checked = |field: &'static str, index: Option<usize>, value: f64| {
             // Negated so that NaN is refused too.
             if (0.0..=MAX_LENGTH).contains(&value) {
                 Ok(())
             } else {
-                Err(ShapeError::Size { field, value })
+                Err(ShapeError::Size { field, index, value })
             }
         };
+        let size = |field: &'static str, value: f64| checked(field, None, value);
         let sizes = |field: &'static str, values: &[f64]| {
-            values.iter().try_for_each(|&value| size(field, value))
+            let mut values = values.iter().enumerate();
+            values.try_for_each(|(i, &value)| checked(field, Some(i), value))
         };
         let order = |inner_field, inner: f64, outer_field, outer: f64| {
             if inner <= outer {

@@ -9,15 +9,22 @@ use crate::{
     mass_properties::{INERTIA, check_lost, check_mass},
 };
 
+/// The place of a number in its field, counted from 1.
+fn counted(index: Option<usize>) -> String {
+    index.map_or_else(String::new, |index| format!("[{}]", index + 1))
+}
+
 /// Why sizes or a density do not make a body.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShapeError {
     /// A size is negative, NaN, infinite or too large.
-    #[error("{field} = {value:?} m: it must lie in [0, {MAX_LENGTH:e}]")]
+    #[error("{field}{} = {value:?} m: it must lie in [0, {MAX_LENGTH:e}]", counted(*index))]
     Size {
         /// Which size.
         field: &'static str,
+        /// Which of several sizes in that field, from 0; the message counts from 1.
+        index: Option<usize>,
         /// The value, m.
         value: f64,
     },
