@@ -40,7 +40,8 @@ pub(crate) use words::Words;
 /// That a number of a run keeps a bound in at least a share of all runs, at a confidence: a requirement.
 ///
 /// A line of text is one, and the same stands in a scenario as a table with the keys `name`, `quantity`, one of `at_most`,
-/// `at_least` and `between`, `probability`, `confidence` and `failed_runs`.
+/// `at_least` and `between`, `probability`, `confidence` and `failed_runs`. A line has itself for its name, in the form in which
+/// it is written: lines that differ in their spaces alone are the same requirement.
 /// ```
 /// use gyradius_campaign::Requirement;
 ///
@@ -126,7 +127,8 @@ impl Requirement {
     /// against it.
     ///
     /// # Errors
-    /// A limit is not finite, the lower one is above the upper one, or probability or confidence is not strictly between 0 and 1.
+    /// A limit is not finite, the lower one is above the upper one, the probability is not between 1e-9 and 1 − 1e-9, or the
+    /// confidence is below one half, with which a requirement could be met and not met at once, or not below 1.
     pub fn new(
         name: &str,
         quantity: Measured,
@@ -135,13 +137,12 @@ impl Requirement {
         confidence: f64,
     ) -> Result<Self, RequirementError> {
         bound.check()?;
-        let refused = |field, value| RequirementError::Share { field, value };
-        if !(probability > 0.0 && probability < 1.0) {
-            return Err(refused("probability", probability));
-        }
-        let confidence =
-            Confidence::new(confidence).map_err(|_| refused("confidence", confidence))?;
-        Acceptance::new(probability, confidence)?;
+        let value = confidence;
+        let confidence = Confidence::new(value).ok().filter(|own| own.level() >= 0.5);
+        let confidence = confidence.ok_or(RequirementError::Confidence { value })?;
+        // Its confidence is allowed.
+        Acceptance::new(probability, confidence)
+            .map_err(|_| RequirementError::Probability { value: probability })?;
         let (name, failed_runs) = (name.to_owned(), FailedRuns::default());
         Ok(Self { name, quantity, bound, probability, confidence, failed_runs, model: None })
     }
@@ -407,18 +408,22 @@ pub enum RequirementError {
         /// The upper one.
         upper: f64,
     },
-    /// A share is too near to 0 or 1, or the confidence is below one half.
-    #[error(transparent)]
-    Extreme(#[from] StatisticsError),
-    /// A share is out of range.
+    /// The share of the runs is too near to 0 or 1, or is none.
     #[error(
-        "{field} = {}: it must lie strictly between 0 and 1, as 0.9973, or as 99.73 % in a line",
+        "probability = {}: it must lie between 1e-9 and 1 - 1e-9, as 0.9973, or as 99.73 % in a line",
         plain(*value)
     )]
-    Share {
-        /// Which.
-        field: &'static str,
-        /// The value.
+    Probability {
+        /// The share.
+        value: f64,
+    },
+    /// The confidence is below one half, or is none.
+    #[error(
+        "confidence = {}: it must be at least 0.5 and below 1, as 0.9, or as 90 % in a line",
+        plain(*value)
+    )]
+    Confidence {
+        /// The confidence.
         value: f64,
     },
 }

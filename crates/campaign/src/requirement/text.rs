@@ -8,7 +8,7 @@ use crate::number::plain;
 /// What a sign begins with.
 const SIGNS: [char; 4] = ['<', '>', '≤', '≥'];
 
-/// Reads a requirement from a line, which is its name too.
+/// Reads a requirement from a line. Its name is the line as it is written, so that lines which say the same are the same.
 pub(super) fn parse(text: &str) -> Result<Requirement, RequirementError> {
     let mut words = Words::new(text);
     let (measured, bound) = bounded(&mut words)?;
@@ -17,7 +17,8 @@ pub(super) fn parse(text: &str) -> Result<Requirement, RequirementError> {
     words.expect("at")?;
     let confidence = words.share()?;
     words.end()?;
-    Requirement::new(text.trim(), measured, bound, probability, confidence)
+    let requirement = Requirement::new("", measured, bound, probability, confidence)?;
+    Ok(Requirement { name: requirement.to_string(), ..requirement })
 }
 
 /// Reads what is bounded, and how.
@@ -124,6 +125,82 @@ mod tests {
             prop_assert_eq!(&again, &Requirement { name: line.clone(), ..requirement }, "{}", line);
             prop_assert_eq!(again.to_string(), line);
         }
+    }
+
+    proptest! {
+        /// A line says the same with other spaces, other signs, its sides changed, and its shares in another form.
+        #[test]
+        fn lines_that_say_the_same_are_the_same(
+            kind in 0..4_u8,
+            limit in -1000..1000_i32,
+            shares in (2..99_u32, 50..99_u32),
+            spaces in prop::collection::vec(0..3_usize, 12),
+            signs: [bool; 2],
+        ) {
+            let quantity = ["x", "abs(x)", "norm(x,y)", "\"a,b\""][usize::from(kind)];
+            let (low, high) = (f64::from(limit) / 8.0, f64::from(limit) / 8.0 + 3.5);
+            let plainly = [
+                format!("{low} <= {quantity} <= {high}"), format!("{quantity} >= {low}"), format!("{quantity} <= {high}"),
+            ];
+            let [at_least, at_most] = [if signs[0] { "≥" } else { ">=" }, if signs[1] { "≤" } else { "<=" }];
+            let otherwise = [
+                format!("{high:e} {at_least} {quantity} {at_least} {low}"),
+                format!("{low:e} {at_most} {quantity}"),
+                format!("{high} {at_least} {quantity}"),
+            ];
+            for (plainly, otherwise) in plainly.into_iter().zip(otherwise) {
+                let plainly = format!("{plainly} in {} % at {} %", shares.0, shares.1);
+                let other = format!("{otherwise} in 0.{:02} at {}%", shares.0, shares.1);
+                let mut spaces = spaces.iter();
+                let mut widened = String::new();
+                for c in other.chars() {
+                    widened.push(c);
+                    if c == ' ' {
+                        widened.push_str(&" ".repeat(*spaces.next().unwrap_or(&0)));
+                    }
+                }
+                let [plainly, other, widened] =
+                    [plainly, other, widened].map(|line| line.parse::<Requirement>().unwrap());
+                prop_assert_eq!(&plainly, &other);
+                prop_assert_eq!(&plainly, &widened);
+                prop_assert_eq!(plainly.name(), plainly.to_string());
+                prop_assert_eq!(&plainly.to_string().parse::<Requirement>().unwrap(), &plainly);
+            }
+        }
+    }
+
+    proptest! {
+        /// Shares up to both ends and beyond: what is refused is named, with its value, and all else is a requirement.
+        #[test]
+        fn shares_out_of_range_are_named(
+            probability in share_or_none(&[0.0, 1e-10, 1e-9, 1.0 - 1e-9, 1.0 - 1e-10, 1.0, f64::NAN]),
+            confidence in share_or_none(&[0.0, 0.5_f64.next_down(), 0.5, 1.0_f64.next_down(), 1.0, f64::INFINITY, f64::NAN]),
+        ) {
+            let bound = Bound::AtMost(1.0);
+            let made = Requirement::new("it", Measured::column("x"), bound, probability, confidence);
+            let told = made.map(|_| ()).map_err(|error| error.to_string());
+            if !(0.5..1.0).contains(&confidence) {
+                let said = format!("confidence = {confidence}: it must be at least 0.5 and below 1, as 0.9, or as 90 % in a line");
+                prop_assert_eq!(told, Err(said));
+            } else if !(1e-9..=1.0 - 1e-9).contains(&probability) {
+                let told = told.unwrap_err();
+                prop_assert!(told.starts_with("probability = ") && told.contains(": it must lie between 1e-9 and 1 - 1e-9"), "{}", told);
+            } else {
+                prop_assert_eq!(told, Ok(()));
+            }
+        }
+    }
+
+    /// A share, one of these numbers, or any number.
+    fn share_or_none(some: &[f64]) -> impl Strategy<Value = f64> {
+        prop_oneof![0.0..1.0_f64, prop::sample::select(some.to_vec()), -10.0..10.0_f64]
+    }
+
+    #[test]
+    fn lines_without_spaces_are_those_with_them() {
+        let narrow: Requirement = "x<=1 in 99% at 90%".parse().unwrap();
+        assert_eq!(narrow, "x <= 1 in 99 % at 90 %".parse().unwrap());
+        assert_eq!(narrow.name(), "x <= 1 in 99 % at 90 %");
     }
 
     #[test]
