@@ -164,8 +164,7 @@ impl Runs {
     }
 
     fn read(&self, path: &Path) -> Result<Table, RunsError> {
-        let read = self.empty.read_parquet(path);
-        read.map_err(|problem| RunsError::Block { path: path.to_owned(), problem })
+        self.empty.read_parquet(path)
     }
 }
 
@@ -182,6 +181,12 @@ impl Block {
 impl From<Table> for Runs {
     fn from(table: Table) -> Self {
         Self::new(&table.from_run(0), Vec::new(), vec![table])
+    }
+}
+
+impl RunsError {
+    pub(crate) fn of(path: &Path, problem: ParquetError) -> Self {
+        Self::Block { path: path.to_owned(), problem }
     }
 }
 

@@ -19,6 +19,7 @@ use crate::{
     column::{Column, Kind},
     failure::{Failure, OK},
     kept::Kept,
+    runs::RunsError,
     table::{Source, Table, Values},
 };
 
@@ -108,8 +109,13 @@ impl Table {
     /// Reads a table that was written, of the same model and columns as this one.
     ///
     /// # Errors
-    /// The file cannot be read, or is not of these columns.
-    pub fn read_parquet(&self, path: &Path) -> Result<Self, ParquetError> {
+    /// The file cannot be read, or is not of these columns; the error names it.
+    pub fn read_parquet(&self, path: &Path) -> Result<Self, RunsError> {
+        self.read_block(path).map_err(|problem| RunsError::of(path, problem))
+    }
+
+    /// The same, where another error names the file.
+    pub(crate) fn read_block(&self, path: &Path) -> Result<Self, ParquetError> {
         let reader = open(path)?;
         let schema = reader.metadata().file_metadata().schema_descr_ptr();
         let places: BTreeMap<&str, usize> =
@@ -338,8 +344,15 @@ pub(crate) fn read<T: DataType>(
 /// the run.
 ///
 /// # Errors
-/// The table cannot be read, or is not of this kind.
+/// The table cannot be read, or is not of this kind; the error names it.
 pub fn read_run(
+    path: &Path,
+    run: (&str, u64),
+) -> Result<Option<Vec<(String, Cell<'static>)>>, RunsError> {
+    found_run(path, run).map_err(|problem| RunsError::of(path, problem))
+}
+
+fn found_run(
     path: &Path,
     (model, run): (&str, u64),
 ) -> Result<Option<Vec<(String, Cell<'static>)>>, ParquetError> {

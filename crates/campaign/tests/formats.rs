@@ -6,6 +6,8 @@ use gyradius_campaign::{
 use proptest::prelude::*;
 use std::collections::HashMap;
 
+use crate::scratch::scratch;
+
 /// What a run has in the columns of a table, and why it failed if it did.
 type Run = (Option<String>, Vec<Cell<'static>>);
 
@@ -270,6 +272,18 @@ fn long_tables_of_several_models_are_written_in_order() {
     }
     assert!(read_run(file.path(), ("a", 10)).unwrap().is_some());
     assert!(read_run(file.path(), ("b", 9)).unwrap().is_none());
+    // What cannot be read is named, whether it is not there or no table.
+    let scratch = scratch();
+    let [missing, wrong] =
+        ["missing.parquet", "wrong.parquet"].map(|name| scratch.path().join(name));
+    std::fs::write(&wrong, "model,run\nm,1\n").unwrap();
+    for path in [missing, wrong] {
+        let place = format!("{}: ", path.display());
+        let refused = read_run(&path, ("m", 1)).unwrap_err().to_string();
+        assert!(refused.starts_with(&place) && !refused.contains("External"), "{refused}");
+        let refused = tables[0].read_parquet(&path).unwrap_err().to_string();
+        assert!(refused.starts_with(&place) && !refused.contains("External"), "{refused}");
+    }
 }
 
 #[test]

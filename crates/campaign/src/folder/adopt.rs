@@ -82,7 +82,7 @@ impl Folder<'_> {
             let content = |block: &Block| match empty.iter().find(|t| t.model() == block.model()) {
                 None => Ok(None),
                 Some(empty) => {
-                    let table = empty.read_parquet(&blocks.path(block));
+                    let table = empty.read_block(&blocks.path(block));
                     table.and_then(|table| table.kept_parquet(kept)).map_err(|error| {
                         Problem::Block { name: block.name(), problem: stored::said(&error) }
                     })

@@ -1,9 +1,8 @@
 //! Why a run is not replayed.
 
-use gyradius_campaign::TableError;
+use gyradius_campaign::{RunsError, TableError};
 use gyradius_formats::WriteError;
 use gyradius_separation::RunError;
-use parquet::errors::ParquetError;
 use std::path::PathBuf;
 
 use crate::{Fleet, ResultsError, ScenarioError};
@@ -61,12 +60,10 @@ pub enum ReplayError {
     #[error("stopped")]
     Stopped,
     /// The run table cannot be read.
-    #[error("cannot read {}: {problem}", path.display())]
+    #[error("cannot read {problem}")]
     Table {
-        /// The table.
-        path: PathBuf,
-        /// Why.
-        problem: ParquetError,
+        /// Which, and why.
+        problem: RunsError,
     },
     /// What the study tells of its run tables cannot be read.
     #[error("{}: {problem}", path.display())]

@@ -1,7 +1,7 @@
 //! Holding the row of a run that was done again against that of the study, bit by bit.
 
 use gyradius_campaign::{
-    Block, Cell, Column, Identity, Kept, MANIFEST, Manifest, Row, Rows, Table, read_run,
+    Block, Cell, Column, Identity, Kept, MANIFEST, Manifest, Row, Rows, RunsError, Table, read_run,
 };
 use parquet::errors::ParquetError;
 use std::{
@@ -125,12 +125,12 @@ impl Comparison<'_> {
             );
         }
         let found = read_run(self.path, (self.own.model(), self.own.first()));
-        found.map_err(|problem| ReplayError::Table { path: self.path.to_owned(), problem })
+        found.map_err(|problem| ReplayError::Table { problem })
     }
 
     fn unreadable(&self, problem: &str) -> ReplayError {
-        let problem = ParquetError::General(problem.to_owned());
-        ReplayError::Table { path: self.path.to_owned(), problem }
+        let (path, problem) = (self.path.to_owned(), ParquetError::General(problem.to_owned()));
+        ReplayError::Table { problem: RunsError::Block { path, problem } }
     }
 
     fn differs(&self, column: &str, table: String, replayed: String) -> ReplayError {
