@@ -10,9 +10,12 @@ pub enum MassFault {
     /// Inertia without mass.
     #[error("inertia on a mass of 0 kg")]
     Zero,
-    /// A mass below zero, or NaN.
+    /// A mass below zero.
     #[error("mass = {0} kg: it must not be negative")]
     Negative(f64),
+    /// A mass that is infinite or NaN.
+    #[error("mass = {0} kg: it must be finite")]
+    NotFinite(f64),
 }
 
 /// What is worth knowing, and no fault.
@@ -79,10 +82,10 @@ pub fn judge(matrix: &Matrix3<f64>, mass_kg: Option<f64>, tolerance: f64) -> Bod
     let report = RealizabilityReport::within(matrix, tolerance);
     let no_inertia = *matrix == Matrix3::zeros();
     let mass_fault = match mass_kg {
-        // Negated so that NaN is a fault too.
-        Some(mass) if !(mass >= 0.0) => Some(MassFault::Negative(mass)),
+        Some(mass) if !mass.is_finite() => Some(MassFault::NotFinite(mass)),
+        Some(mass) if mass < 0.0 => Some(MassFault::Negative(mass)),
         Some(mass) if mass == 0.0 && !no_inertia => Some(MassFault::Zero),
-        _ => None,
+        Some(_) | None => None,
     };
     let note = match mass_kg {
         _ if !report.is_realizable() => {
@@ -90,9 +93,9 @@ pub fn judge(matrix: &Matrix3<f64>, mass_kg: Option<f64>, tolerance: f64) -> Bod
                 .is_realizable()
                 .then_some(Note::FlippedProducts)
         }
-        Some(mass) if no_inertia && mass > 0.0 => Some(Note::PointMass),
+        Some(mass) if no_inertia && mass > 0.0 && mass.is_finite() => Some(Note::PointMass),
         Some(mass) if no_inertia && mass == 0.0 => Some(Note::Massless),
-        _ => None,
+        Some(_) | None => None,
     };
     BodyJudgement { report, mass_fault, note }
 }
@@ -156,7 +159,14 @@ mod tests {
         assert!(judgement.report().is_realizable());
         let negative = with(diagonal([1.0; 3]), -1.0);
         assert_eq!(negative.mass_fault(), Some(MassFault::Negative(-1.0)));
-        assert!(with(diagonal([1.0; 3]), f64::NAN).mass_fault().is_some());
+        for mass in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
+            for matrix in [diagonal([1.0; 3]), Matrix3::zeros()] {
+                let judgement = with(matrix, mass);
+                let said = format!("mass = {mass} kg: it must be finite");
+                assert_eq!(judgement.reasons().collect::<Vec<_>>(), [said]);
+                assert_eq!(judgement.note(), None);
+            }
+        }
         assert_eq!(with(Matrix3::zeros(), -1.0).mass_fault(), Some(MassFault::Negative(-1.0)));
         assert_eq!(with(Matrix3::zeros(), 0.0).note(), Some(Note::Massless));
         assert_eq!(with(Matrix3::zeros(), 1.0).note(), Some(Note::PointMass));
@@ -183,6 +193,8 @@ mod tests {
             mass in prop::num::f64::ANY,
         ) {
             let judgement = judge(&Matrix3::from_row_slice(&nine), Some(mass), 1e-6);
+            let possible = (0.0..=f64::MAX).contains(&mass);
+            prop_assert!(possible || judgement.mass_fault().is_some(), "{mass}");
             prop_assert!(judgement.report().is_realizable() || judgement.reasons().count() > 0);
         }
     }
