@@ -43,6 +43,18 @@ fn flags(verb: &str) -> Vec<String> {
     words.map(str::to_owned).collect()
 }
 
+/// The page of the package has a row for each verb, and none for another.
+#[test]
+fn the_readme_has_every_verb() {
+    let rows = include_str!("../README.md").lines();
+    let rows = rows.filter_map(|line| line.strip_prefix("| `gyradius ")?.split('`').next());
+    let mut rows: Vec<&str> = rows.collect();
+    let mut verbs = verbs();
+    rows.sort_unstable();
+    verbs.sort_unstable();
+    assert_eq!(rows, verbs);
+}
+
 #[test]
 fn completions_name_every_verb_and_flag() {
     let verbs = verbs();

@@ -154,8 +154,8 @@ pub(super) fn read(
                 1 => String::new(),
                 n => format!("and {} more; ", n - 1),
             };
-            let what = if ten.is_some() { "mass properties" } else { "inertia" };
-            let reason = format!("no body has this {what}: {reason}");
+            let what = if ten.is_some() { "these mass properties" } else { "this inertia" };
+            let reason = format!("no body has {what}: {reason}");
             Err(TableError::Impossible {
                 place: format!("{place}:{}", body.line()),
                 index,
