@@ -19,8 +19,8 @@ impl RadiallyConstrainedGaussian {
     /// quaternion multiplication from the left. This way in is defined for every mean, the identity included.
     ///
     /// # Radial variance
-    /// Small turns of which the squares are small beside √s too have the covariance P. Since the sphere bends away from
-    /// the plane, an axis with the variance Pᵢ has less of it by the share Pᵢ (tr P + 2Pᵢ)/(32 s), to first order: by 1 %
+    /// δ has the covariance P where its square is small beside 1 and beside √s. Since the sphere bends away from the plane,
+    /// the variance Pᵢ about a principal axis of P is smaller by the share Pᵢ (tr P + 2Pᵢ)/(32 s), to first order: by 1 %
     /// where three equal deviations are 4° and s is 4e-4, or 9° and s is 0.01. Turns that s keeps narrower than P are of the
     /// size of s^¼, whatever P. Of larger s the sphere removes all but the second lobe: with s below about 0.1 there is
     /// none, and with an infinite s (Bingham's law) the second lobe weighs as much as the first and consists of the same

@@ -127,11 +127,14 @@ fn rows_of_no_body_are_refused_or_counted() {
     let text = natural(&bodies()[..30]);
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
     let rest = lines[4].split_once(',').unwrap().1.to_owned();
-    lines[4] = format!("-1,{rest}");
-    fs::write(folder.path().join("ten.csv"), lines.join("\n")).unwrap();
-    let (code, _, message) = run(&folder, &["fit", "ten.csv"]);
-    assert_eq!(code, 2);
-    assert!(message.contains("ten.csv:5") && message.contains("mass"), "{message}");
+    for mass in ["0", "-1"] {
+        lines[4] = format!("{mass},{rest}");
+        fs::write(folder.path().join("ten.csv"), lines.join("\n")).unwrap();
+        let (code, _, message) = run(&folder, &["fit", "ten.csv"]);
+        assert_eq!(code, 2);
+        let said = format!("ten.csv:5: no body has these mass properties: mass = {mass} kg");
+        assert!(message.contains(&said), "{message}");
+    }
     let found = json(&folder, &["fit", "ten.csv", "--skip-impossible"]);
     assert_eq!((found["set_aside"].as_u64(), found["samples"].as_u64()), (Some(1), Some(29)));
     lines[4] = format!("heavy,{rest}");
