@@ -118,6 +118,26 @@ impl ScalarLawForm {
         })
     }
 
+    /// The same of a component of a vector, all of whose three components have this law: a covariance of them could stand in its place,
+    /// and a refusal says so.
+    ///
+    /// # Errors
+    /// As [`about`](Self::about).
+    pub fn about_component(
+        &self,
+        nominal: f64,
+        unit: LawUnit,
+    ) -> Result<ScalarLaw, ScalarLawFormError> {
+        self.about(nominal, unit).map_err(|mut error| {
+            let is_missing =
+                error.key == Some("sigma") && self.values.iter().all(|(key, _)| *key != "sigma");
+            if is_missing && self.law.key("covariance").is_some() {
+                error.problem += ", or, as the law of all three components of a vector, covariance";
+            }
+            error
+        })
+    }
+
     /// The covariance of a vector, if that is all it says.
     #[must_use]
     pub fn covariance(&self) -> Option<[[f64; 3]; 3]> {
@@ -206,13 +226,7 @@ impl ScalarLawForm {
         let given = Given { law: law.name, nominal, values };
         (law.read)(&given).map_err(|error| {
             let missing = matches!(error, ScalarLawError::Missing { .. });
-            let vector = missing && error.key() == Some("sigma") && law.key("covariance").is_some();
-            let or = if vector {
-                ", or, as the law of all three components of a vector, covariance"
-            } else {
-                ""
-            };
-            let problem = format!("{error}{or}");
+            let problem = error.to_string();
             let key = if self.bare { None } else { error.key() };
             Refused { inner: ScalarLawFormError { key, problem }, made: !missing && !self.bare }
         })
@@ -392,6 +406,35 @@ mod file {
                 }
             }
             map.end()
+        }
+    }
+}
+
+#[cfg(all(test, feature = "serde"))]
+mod tests {
+    use super::*;
+
+    /// A covariance is named where a law could have one: of three components at once.
+    #[test]
+    fn a_covariance_is_named_where_it_may_stand() {
+        let form = |text: &str| serde_json::from_str::<ScalarLawForm>(text).unwrap();
+        let normal = form(r#"{"law":"normal"}"#);
+        let single = normal.about(1.0, LawUnit::OWN).unwrap_err().to_string();
+        assert!(single.ends_with("needs sigma"), "{single}");
+        let of_vector = normal.about_component(1.0, LawUnit::OWN).unwrap_err().to_string();
+        assert!(
+            of_vector.ends_with(
+                "needs sigma, or, as the law of all three components of a vector, covariance"
+            ),
+            "{of_vector}"
+        );
+        // Where another law lacks its sigma, or sigma is wrong, a covariance is no way out.
+        for text in [
+            r#"{"law":"normal","sigma":-1.0}"#,
+            r#"{"law":"truncated-normal","low":0.0,"high":1.0}"#,
+        ] {
+            let refused = form(text).about_component(1.0, LawUnit::OWN).unwrap_err().to_string();
+            assert!(!refused.contains("covariance"), "{refused}");
         }
     }
 }

@@ -120,10 +120,15 @@ impl VectorLawFile {
                 return Err(ScenarioError::field(field, problem));
             }
         };
-        let laws =
-            each.iter().zip(nominal).enumerate().map(|(i, (law, nominal))| {
-                about(&law.form, &self.drawn(field, i).1, *nominal, unit)
-            });
+        let could_covary = matches!(self, Self::Same(_)) && nominal.len() == 3;
+        let laws = each.iter().zip(nominal).enumerate().map(|(i, (law, nominal))| {
+            let law = if could_covary {
+                law.form.about_component(*nominal, unit)
+            } else {
+                law.form.about(*nominal, unit)
+            };
+            law.map_err(|error| refused(&self.drawn(field, i).1, &error))
+        });
         Ok(VectorLaw { laws: laws.collect::<Result<_, _>>()?, pairs: Vec::new() })
     }
 }
