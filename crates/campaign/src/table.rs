@@ -464,7 +464,7 @@ impl fmt::Debug for Row<'_> {
 #[non_exhaustive]
 pub enum TableError {
     /// Two columns have the same name, or one has none.
-    #[error("column {column:?}: it must have a name, which no other column has")]
+    #[error("column {column:?}: {}", if column.is_empty() { "it must have a name" } else { "another column of the table has this name" })]
     Name {
         /// The column.
         column: String,

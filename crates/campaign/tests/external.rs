@@ -416,6 +416,9 @@ fn what_cannot_be_started_is_refused() {
     }
     let absent = here.join("absent");
     assert!(matches!(Program::new(&["sh".into()], &absent), Err(ProgramError::Folder { .. })));
+    let file = Program::new(&["sh".into()], &here.join("plain.txt")).unwrap_err();
+    assert!(matches!(file, ProgramError::NoFolder { .. }), "{file}");
+    assert!(file.to_string().ends_with("plain.txt, is a file: it must be a folder"), "{file}");
     let program = Program::new(&["sh".into()], here).unwrap();
     for timeout_s in [0.0, -1.0, f64::NAN, f64::INFINITY, 2e6] {
         let refused = program.clone().with_timeout(timeout_s);

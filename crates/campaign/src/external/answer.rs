@@ -31,6 +31,9 @@ pub(super) fn read(answer: &[u8], run: u64, outputs: &[Column]) -> Result<Vec<f6
         let problem = "it is a list".to_owned();
         return Err(Trouble::NotJson { problem, line: answer.to_vec() });
     }
+    if let Some(problem) = byte_order_mark(answer) {
+        return Err(Trouble::NotJson { problem, line: answer.to_vec() });
+    }
     let with_words_in_json;
     let parsed: Answer<'_> = match serde_json::from_slice(answer) {
         Ok(parsed) => parsed,
@@ -59,6 +62,18 @@ pub(super) fn read(answer: &[u8], run: u64, outputs: &[Column]) -> Result<Vec<f6
         let word = value.get().trim_matches('"');
         shown(if in_json(word).is_some() { word } else { value.get() }.as_bytes(), 40)
     })
+}
+
+/// What is wrong with an answer that begins with a byte order mark, which nobody sees: JSON begins with none (RFC 8259, section 8.1).
+fn byte_order_mark(answer: &[u8]) -> Option<String> {
+    let marks: [(&[u8], &str); 3] =
+        [(b"\xef\xbb\xbf", "UTF-8"), (b"\xff\xfe", "UTF-16"), (b"\xfe\xff", "UTF-16")];
+    let (mark, text) = marks.into_iter().find(|(mark, _)| answer.starts_with(mark))?;
+    let mark: Vec<String> = mark.iter().map(|byte| format!("{byte:02X}")).collect();
+    Some(format!(
+        "it begins with a byte order mark of {text} ({}), which is invisible; it must be UTF-8 without one",
+        mark.join(" ")
+    ))
 }
 
 /// The number that a value is, NaN if it is none; a flag is 1 or 0. One that is infinite may stand in quotation marks, for JSON has none.
@@ -271,6 +286,23 @@ mod tests {
             let _ = read(&bytes, 3, &columns);
             bytes.splice(0..0, *b"{\"outputs\":{\"y\":");
             let _ = read(&bytes, 3, &columns);
+        }
+    }
+
+    /// A byte order mark is invisible where the answer is shown, so that it is told.
+    #[test]
+    fn byte_order_marks_are_told() {
+        let columns = [Column::number("y", "1", "A number.")];
+        let answer = br#"{"outputs": {"y": 1}}"#;
+        assert!(read(answer, 3, &columns).is_ok());
+        for (mark, told) in [
+            (&b"\xef\xbb\xbf"[..], "a byte order mark of UTF-8 (EF BB BF)"),
+            (b"\xff\xfe", "a byte order mark of UTF-16 (FF FE)"),
+            (b"\xfe\xff", "a byte order mark of UTF-16 (FE FF)"),
+        ] {
+            let refused = read(&[mark, answer].concat(), 3, &columns).unwrap_err();
+            let Trouble::NotJson { problem, .. } = refused else { panic!("{refused:?}") };
+            assert!(problem.contains(told), "{problem}");
         }
     }
 

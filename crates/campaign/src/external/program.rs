@@ -30,15 +30,20 @@ impl Program {
     /// separator, as `./spin`. A process is kept for many runs, works in the folder and has 60 s for each run.
     ///
     /// # Errors
-    /// There are no words, the first one is empty, or the folder is not there.
+    /// There are no words, the first one is empty, or the folder is not there, or is a file.
     pub fn new(command: &[String], folder: &Path) -> Result<Self, ProgramError> {
         if command.first().is_none_or(String::is_empty) {
             return Err(ProgramError::Empty);
         }
-        let folder = std::path::absolute(folder)
-            .ok()
-            .filter(|path| path.is_dir())
-            .ok_or_else(|| ProgramError::Folder { folder: folder.to_owned() })?;
+        let folder =
+            std::path::absolute(folder).ok().filter(|path| path.is_dir()).ok_or_else(|| {
+                let given = folder.to_owned();
+                if folder.exists() {
+                    ProgramError::NoFolder { path: given }
+                } else {
+                    ProgramError::Folder { folder: given }
+                }
+            })?;
         let word = |(place, word): (usize, &String)| {
             let file = folder.join(word);
             let is_path =
@@ -134,6 +139,12 @@ pub enum ProgramError {
     Folder {
         /// The folder.
         folder: PathBuf,
+    },
+    /// What is given as the folder that it belongs to is something else.
+    #[error("the folder of the command, {}, is a file: it must be a folder", path.display())]
+    NoFolder {
+        /// What is there.
+        path: PathBuf,
     },
     /// The time for a run is out of range.
     #[error(

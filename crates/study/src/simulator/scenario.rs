@@ -145,17 +145,25 @@ impl SimulatorScenario {
         }
         let columns: Vec<Column> = self.columns().collect();
         let refused = |count: &usize| Table::new("", 0, columns[..*count].to_vec()).err();
-        let Some(error) = refused(&columns.len()) else { return Ok(()) };
+        if refused(&columns.len()).is_none() {
+            return Ok(());
+        }
         // The first that is refused is the one that is to blame.
         let (all, outputs) = (columns.len(), self.outputs.len());
         let place = (1..all).find(|count| refused(count).is_some()).unwrap_or(all) - 1;
         let drawn = all - outputs - self.quantities.len();
-        let field = match place.checked_sub(drawn) {
+        let field = |place: usize| match place.checked_sub(drawn) {
             None => "bodies".to_owned(),
             Some(i) if i < self.quantities.len() => format!("quantities[{}].name", i + 1),
             Some(i) => format!("simulation.outputs[{}].name", i - self.quantities.len() + 1),
         };
-        Err(ScenarioError::field(field, error))
+        let name = columns[place].name();
+        let by = match columns[..place].iter().position(|column| column.name() == name) {
+            Some(first) => field(first),
+            None => "a column that every run table has".to_owned(),
+        };
+        let problem = format!("{name:?}: the name is taken, by {by}");
+        Err(ScenarioError::field(field(place), problem))
     }
 
     /// The fleet, if flights of a vehicle have something in common, so that runs are not independent.
@@ -325,7 +333,7 @@ fn program(file: &File) -> Result<Program, ScenarioError> {
         })
         .map_err(|error| {
             let key = match error {
-                ProgramError::Folder { .. } => "folder",
+                ProgramError::Folder { .. } | ProgramError::NoFolder { .. } => "folder",
                 ProgramError::Timeout { .. } => "timeout_s",
                 _ => "command",
             };

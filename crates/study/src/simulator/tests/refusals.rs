@@ -23,8 +23,9 @@ fn refusals_name_their_key() {
         ["sh", "answer.sh"] | "sh answer.sh" | simulation.command: invalid type: string "sh answer.sh", expected a list of the program and its arguments, such as ["python3", "simulator.py"]
         ["sh", "answer.sh"] | ["sh", 3] | simulation.command[2]: invalid type: integer `3`, expected a string
         timeout_s = 60.0 | folder = "/no/such" | simulation.folder
-        name = "y" | name = "x" | simulation.outputs
-        name = "y" | name = "run" | simulation.outputs
+        timeout_s = 60.0 | folder = "/etc/passwd" | simulation.folder: the folder of the command, /etc/passwd, is a file: it must be a folder
+        name = "y" | name = "x" | simulation.outputs[1].name: "x": the name is taken, by quantities[1].name
+        name = "y" | name = "run" | simulation.outputs[1].name: "run": the name is taken, by a column that every run table has
         name = "y" | name = "y 1" | simulation.outputs[1].name
         shell | a/b | name
         [[correlations]] | [payload]\nmass_kg = 1.0\n[[correlations]] | payload
@@ -39,10 +40,20 @@ fn refusals_name_their_key() {
         assert!(tied.contains(&from), "{from}");
         refused(&tied.replace(&from, &to), &key);
     }
-    for name in ["x", "run"] {
-        let normal = "{ law = \"normal\", mean = 1.0, sigma = 1.0 }";
-        refused(&(uniform() + &quantity(name, normal)), "quantities[2].name");
+    let normal = "{ law = \"normal\", mean = 1.0, sigma = 1.0 }";
+    for (name, by) in [
+        ("x", "quantities[1].name"),
+        ("run", "a column that every run table has"),
+        ("status_kind", "a column that every run table has"),
+    ] {
+        let key = format!("quantities[2].name: {name:?}: the name is taken, by {by}");
+        refused(&(uniform() + &quantity(name, normal)), &key);
     }
+    // A quantity is one number, which has no covariance; a velocity has three, if they have a law in common.
+    let message =
+        |text: &str| SimulatorScenario::from_toml(text, folder.path()).unwrap_err().to_string();
+    let scalar = message(&(uniform() + &quantity("z", "{ law = \"normal\", mean = 1.0 }")));
+    assert!(scalar.ends_with("law = \"normal\" needs sigma"), "{scalar}");
     for [dispersion, key] in cases(
         r#"
         mass_centre_m = 0.1 | bodies[1].dispersion.mass_centre_m
