@@ -111,6 +111,17 @@ fn of_vehicles_the_first_flights_are_judged() {
             assert_eq!(said.contains(more), of_fleet, "{said}");
             assert!(!said.contains("more runs"), "{said}");
         }
+        // Some rows of the table, in which no vehicle is whole, tell nothing of whole vehicles.
+        let all = |of: u32| (0..450).filter(move |run| of == 1 || run % of != 2);
+        for (of, told) in [(1, true), (5, false)] {
+            let rows: String =
+                all(of).map(|run| format!("{run},{},{},1.0\n", run / 5, run % 5)).collect();
+            fs::write(scratch.path("part.csv"), format!("run,vehicle,flight,y\n{rows}")).unwrap();
+            let part = scratch.run(&["verdict", "part.csv", "--require", "y <= 5 in 90 % at 90 %"]);
+            let said = String::from_utf8(part.stdout).unwrap();
+            assert_eq!(said.contains("\n  vehicles     90 of 90 keep it"), told, "{said}");
+            assert_eq!(said.contains("\n  vehicles "), told, "{said}");
+        }
         // A table of these columns that lost the run.
         let rows: String = (0..450).map(|run| format!("{},{},1.0\n", run / 5, run % 5)).collect();
         fs::write(scratch.path("lost.csv"), format!("vehicle,flight,nutation_deg\n{rows}"))

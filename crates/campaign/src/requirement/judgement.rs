@@ -408,7 +408,8 @@ impl fmt::Display for Judgement {
                 self.unit(counted)
             )?;
         }
-        if let Some(vehicles) = self.vehicles {
+        // A part of a table may hold no vehicle whole, of which nothing can be said then.
+        if let Some(vehicles) = self.vehicles.filter(|vehicles| vehicles.vehicles > 0) {
             writeln!(f, "  vehicles     {vehicles}")?;
         }
         let worst: Vec<String> = self
