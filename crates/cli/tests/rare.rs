@@ -85,8 +85,8 @@ fn importance_sampling_says_what_it_steered() {
     assert_eq!(found["warnings"], Value::Array(Vec::new()));
     let said = with(&[]);
     for line in [
-        "  steered      payload mass centre, stage mass centre, ",
-        "  own laws     payload roots, payload axes, ",
+        "  steered      payload mass centre; stage mass centre; ",
+        "  own laws     payload roots; payload axes; ",
     ] {
         assert!(said.contains(line), "{said}");
     }
@@ -95,6 +95,31 @@ fn importance_sampling_says_what_it_steered() {
         ["rare", "payload_mass_centre_1_m >= 1", "--scenario", "it.toml", "--method", "importance"];
     let said = scratch.done(&far, 0);
     assert!(said.contains("no event was found; below") && said.contains("warning"), "{said}");
+}
+
+/// A simulator that answers twice has to be started again for it, of which both verbs warn.
+#[test]
+fn more_than_the_answers_is_told_as_by_a_study() {
+    let scratch = Scratch::new();
+    let script = "while read -r line; do\n    x=${line#*'\"x\":'}; x=${x%%[,\\}]*}\n    \
+                  echo \"{\\\"outputs\\\":{\\\"y\\\":$x}}\"$MORE\ndone\n";
+    let scenario = "name = \"twice\"\nruns = 20\n[simulation]\ncommand = [\"sh\", \"it.sh\"]\noutputs = [{ name = \"y\" }]\n\
+                    [[quantities]]\nname = \"x\"\nlaw = { law = \"uniform\", low = 0.1, high = 0.9 }\n";
+    fs::write(scratch.path("s.toml"), scenario).unwrap();
+    for (more, warned) in [("", false), ("; echo more", true)] {
+        fs::write(scratch.path("it.sh"), script.replace("$MORE", more)).unwrap();
+        let out = format!("out-{warned}");
+        for arguments in [
+            &["study", "--scenario", "s.toml", "--out", &out][..],
+            &["rare", "y >= 0.5", "--scenario", "s.toml", "--per-level", "100", "--replicas", "2"],
+        ] {
+            let output = scratch.run(&[arguments, &["--threads", "1"]].concat());
+            assert!(output.status.success(), "{output:?}");
+            let said = String::from_utf8(output.stderr).unwrap();
+            let warning = "warning: the simulator wrote more to standard output than its answers, such as `more`, and ";
+            assert_eq!(said.contains(warning), warned, "{arguments:?}: {said}");
+        }
+    }
 }
 
 /// An event that is not rare is as frequent as in a study.
@@ -124,8 +149,22 @@ fn what_cannot_be_is_refused() {
             &["rare", "cone_deg >= 5", "--model", "other"],
             "model: \"other\": the scenario has proposed",
         ),
-        (&["rare", "cone_deg >= 5", "--per-level", "99"], "99"),
-        (&["rare", "cone_deg >= 5", "--replicas", "1"], "1"),
+        (
+            &["rare", "cone_deg >= 5", "--per-level", "99"],
+            "error: per-level: 99 runs of a level; there must be 100 or more\n",
+        ),
+        (
+            &["rare", "cone_deg >= 5", "--replicas", "1"],
+            "error: replicas: 1 replica; there must be 2 to 1000\n",
+        ),
+        (
+            &["rare", "cone_deg >= 5", "--replicas", "1", "--per-level", "9"],
+            "error: per-level, replicas: 9 runs of a level; there must be 100 or more, and 1 replica; there must be 2 to 1000\n",
+        ),
+        (
+            &["rare", "cone_deg >= 5", "--replicas", "1000", "--per-level", "1e6"],
+            "1000 replicas; their product may be 100000000 at most\n",
+        ),
         (&["rare", "cone_deg >= 5", "--sample", "1e4"], "--method importance"),
         (
             &["rare", "cone_deg >= 5", "--method", "importance", "--replicas", "5"],

@@ -192,9 +192,7 @@ pub enum StatisticsError {
         most: f64,
     },
     /// A search for the law of scores is too small or too large.
-    #[error(
-        "{scores} scores and {per_level} runs of a level; there must be 1 and 100 or more, and 100000000 scores of a level at most"
-    )]
+    #[error("{}", plan(&[(["score", "scores"], *scores, 1, None), (["run of a level", "runs of a level"], *per_level, 100, None)]))]
     SearchPlan {
         /// The scores given.
         scores: usize,
@@ -203,7 +201,12 @@ pub enum StatisticsError {
     },
     /// A plan of subset simulations is too small or too large.
     #[error(
-        "{groups} groups of inputs, {per_level} runs of a level and {replicas} replicas; there must be 1, 100 and 2 or more, 1000 replicas at most, and 100000000 draws of a level in all"
+        "{}",
+        plan(&[
+            (["group of inputs", "groups of inputs"], *groups, 1, None),
+            (["run of a level", "runs of a level"], *per_level, 100, None),
+            (["replica", "replicas"], *replicas, 2, Some(1000)),
+        ])
     )]
     SubsetPlan {
         /// The groups of inputs given.
@@ -237,6 +240,27 @@ pub enum StatisticsError {
         /// The number of groups.
         groups: usize,
     },
+}
+
+/// Which numbers of a plan are out of range; if none is for itself, that their product is. Each is given with what it counts, one of it
+/// and several, the least and the most.
+fn plan(numbers: &[([&str; 2], usize, usize, Option<usize>)]) -> String {
+    let counted = |[one, several]: [&str; 2], value: usize| {
+        format!("{value} {}", if value == 1 { one } else { several })
+    };
+    let wrong = numbers
+        .iter()
+        .filter(|(_, value, least, most)| value < least || most.is_some_and(|most| *value > most));
+    let wrong = wrong.map(|(what, value, least, most)| {
+        let most = most.map_or(" or more".to_owned(), |most| format!(" to {most}"));
+        format!("{}; there must be {least}{most}", counted(*what, *value))
+    });
+    let wrong: Vec<String> = wrong.collect();
+    if !wrong.is_empty() {
+        return wrong.join(", and ");
+    }
+    let all = numbers.iter().map(|(what, value, ..)| counted(*what, *value));
+    format!("{}; their product may be 100000000 at most", all.collect::<Vec<_>>().join(" times "))
 }
 
 /// A number as it reads: 1000, 0.5, 1e300. Never in hundreds of digits.

@@ -4,11 +4,12 @@ mod replica;
 
 pub use replica::SubsetReplica;
 
+use std::ops::RangeInclusive;
+
 use crate::error::share;
 use crate::{Confidence, Interval, Proportion, StatisticsError, law};
 
-/// The most replicas, and the most draws that are kept at once: a number for each group, run of a level and replica.
-const MAX_REPLICAS: usize = 1000;
+/// The most draws that are kept at once: a number for each group, run of a level and replica.
 const MAX_DRAWS: usize = 100_000_000;
 /// The probability below which a simulation gives up, unless told otherwise.
 const LEAST: f64 = 1e-9;
@@ -102,6 +103,11 @@ pub struct SubsetSimulation {
 }
 
 impl SubsetSimulation {
+    /// Fewest runs of a level.
+    pub const FEWEST_PER_LEVEL: usize = 100;
+    /// How many replicas there may be.
+    pub const REPLICAS: RangeInclusive<usize> = 2..=1000;
+
     /// With so many groups of inputs, runs of a level, and replicas. Each level but the first
     /// costs nine tenths of its runs, and the pilot is one replica more.
     ///
@@ -111,8 +117,8 @@ impl SubsetSimulation {
     /// most, and 10⁸ for the product of all three.
     pub fn new(groups: usize, per_level: usize, replicas: usize) -> Result<Self, StatisticsError> {
         let draws = groups.saturating_mul(per_level).saturating_mul(replicas);
-        let least = groups >= 1 && per_level >= 100 && replicas >= 2;
-        if !(least && replicas <= MAX_REPLICAS && draws <= MAX_DRAWS) {
+        let least = groups >= 1 && per_level >= Self::FEWEST_PER_LEVEL;
+        if !(least && Self::REPLICAS.contains(&replicas) && draws <= MAX_DRAWS) {
             return Err(StatisticsError::SubsetPlan { groups, per_level, replicas });
         }
         Ok(Self { groups, per_level, replicas, least: LEAST })

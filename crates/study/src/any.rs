@@ -256,7 +256,7 @@ impl AnyScenario {
 
     /// Finds how often a rare event happens: by subset simulation (Au & Beck 2001) that draws one group of inputs anew at a time, see
     /// [`SubsetSimulation`](gyradius_statistics::SubsetSimulation), or by importance sampling of what is drawn by normal scores, see
-    /// [`SteeredSampling`](gyradius_statistics::SteeredSampling). Nothing is written.
+    /// [`SteeredSampling`](gyradius_statistics::SteeredSampling). Nothing is written. It says what a simulator wrote beyond its answers.
     ///
     /// # Errors
     /// There is no such model or column, or the numbers of runs are out of range; a simulator cannot be started; it was stopped. For importance
@@ -266,8 +266,9 @@ impl AnyScenario {
         event: &Event,
         options: &RareOptions,
         progress: Progress<'_>,
+        say: &dyn Fn(Notice),
     ) -> Result<Rare, StudyError> {
-        of_either!(self, scenario => rare::find(&**scenario, event, options, progress))
+        of_either!(self, scenario => rare::find(&**scenario, event, options, progress, say))
     }
 
     /// Does a share of the runs of a study, of those that are in no finished block, into its folder. Other processes may do

@@ -97,7 +97,7 @@ pub use gyradius_report::{visible, visible_json};
 pub use head::{Head, Judged, Missing};
 pub use options::{Notice, Options};
 pub use quantity::Quantity;
-pub use rare::{Rare, RareEstimate, RareMethod, RareOptions};
+pub use rare::{Rare, RareEstimate, RareFailures, RareMethod, RareOptions, RareWarning};
 pub use replay::{Replay, ReplayError, Which};
 pub use results::{Results, ResultsError};
 pub use robots::{

@@ -1,24 +1,28 @@
 //! How often a rare event happens: by subset simulation or by importance sampling.
 
+mod failed;
 mod importance;
+mod json;
 mod options;
 mod runs;
 mod subset;
+mod warnings;
 
+pub use failed::RareFailures;
 pub use options::{RareMethod, RareOptions};
+pub use warnings::RareWarning;
 
 use gyradius_campaign::{Event, Progress};
-use gyradius_statistics::{
-    Interval, SteeredEstimate, SteeredWarning, SubsetEstimate, SubsetWarning, WeightWarning,
-};
+use gyradius_statistics::{Interval, SteeredEstimate, SubsetEstimate};
 use serde::Serialize;
 use std::fmt;
 
-use crate::{StudyError, subject::Subject};
+use crate::{Notice, StudyError, subject::Subject};
+use failed::Failures;
 use runs::EventRuns;
 
 /// How often a rare event happens.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Rare {
     scenario: String,
     model: String,
@@ -27,8 +31,8 @@ pub struct Rare {
     failed: u64,
     /// Groups of inputs that are drawn independently of each other.
     groups: Vec<String>,
-    #[serde(flatten)]
     estimate: RareEstimate,
+    warnings: Vec<RareWarning>,
 }
 
 /// The estimate of a method.
@@ -95,13 +99,14 @@ impl RareEstimate {
         }
     }
 
-    /// Why not to trust it, in words.
-    #[must_use]
-    pub fn warnings(&self) -> Vec<String> {
+    /// Why not to trust it, as far as it shows that itself.
+    fn warnings(&self) -> Vec<RareWarning> {
         match self {
-            Self::Subset(estimate) => estimate.warnings().iter().map(of_subset).collect(),
+            Self::Subset(estimate) => {
+                estimate.warnings().iter().copied().map(RareWarning::Subset).collect()
+            }
             Self::Importance { estimate, .. } => {
-                estimate.warnings().iter().map(of_scores).collect()
+                estimate.warnings().iter().copied().map(RareWarning::Importance).collect()
             }
         }
     }
@@ -131,6 +136,18 @@ impl Rare {
         &self.estimate
     }
 
+    /// The event.
+    #[must_use]
+    pub fn event(&self) -> &Event {
+        &self.event
+    }
+
+    /// Why not to trust the answer, as far as the runs can show it.
+    #[must_use]
+    pub fn warnings(&self) -> &[RareWarning] {
+        &self.warnings
+    }
+
     /// How many runs failed.
     #[must_use]
     pub fn failed(&self) -> u64 {
@@ -149,14 +166,16 @@ impl Rare {
 /// In lines, the answer first.
 impl fmt::Display for Rare {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { scenario, model, event, failed, groups, estimate } = self;
+        let Self { scenario, model, event, failed, groups, estimate, warnings: _ } = self;
         writeln!(f, "{scenario}, {model}: {event}\n")?;
         let (p, interval) = (estimate.probability(), estimate.interval());
         let percent = 100.0 * interval.confidence().level();
+        let only_if =
+            if self.failed_runs().is_some() { ", if failed runs are not the event" } else { "" };
         if p > 0.0 {
             writeln!(
                 f,
-                "  probability  {} ({percent} % interval: {} to {})",
+                "  probability  {} ({percent} % interval: {} to {}){only_if}",
                 in_digits(p, 4),
                 in_digits(interval.lower(), 3),
                 in_digits(interval.upper(), 3)
@@ -164,7 +183,7 @@ impl fmt::Display for Rare {
         } else {
             writeln!(
                 f,
-                "  probability  no event was found; below {}, with {percent} % confidence",
+                "  probability  no event was found; below {}, with {percent} % confidence{only_if}",
                 in_digits(interval.upper(), 3)
             )?;
         }
@@ -185,15 +204,16 @@ impl fmt::Display for Rare {
             };
             writeln!(f, "  no number    {runs} no {quantity}, and {are} not the event")?;
         }
+        // A group of several inputs has commas in its name.
         match estimate {
-            RareEstimate::Subset(_) => writeln!(f, "  groups       {}", groups.join(", "))?,
+            RareEstimate::Subset(_) => writeln!(f, "  groups       {}", groups.join("; "))?,
             RareEstimate::Importance { steered, own_laws, .. } => {
-                writeln!(f, "  steered      {}", steered.join(", "))?;
-                let own = if own_laws.is_empty() { "none".to_owned() } else { own_laws.join(", ") };
+                writeln!(f, "  steered      {}", steered.join("; "))?;
+                let own = if own_laws.is_empty() { "none".to_owned() } else { own_laws.join("; ") };
                 writeln!(f, "  own laws     {own}")?;
             }
         }
-        for warning in estimate.warnings() {
+        for warning in self.warnings_in_words() {
             writeln!(f, "  warning      {warning}")?;
         }
         Ok(())
@@ -209,86 +229,39 @@ fn in_digits(p: f64, digits: usize) -> String {
     format!("{p:.*}", nines as usize + digits - 1)
 }
 
-fn of_subset(warning: &SubsetWarning) -> String {
-    match warning {
-        SubsetWarning::NotReached { replicas } => format!(
-            "{} found no event: it cannot be, or is rarer than --least, or one group alone must be as \
-             rare as the event; take more runs of a level",
-            if *replicas == 1 {
-                "1 repetition".to_owned()
-            } else {
-                format!("{replicas} repetitions")
-            }
-        ),
-        SubsetWarning::ChainsHardlyMove { acceptance } => format!(
-            "only {:.1} % of the redrawn runs stayed beyond the last level: one group decides nearly alone, and the interval may \
-             be too narrow; take more runs of a level",
-            100.0 * acceptance
-        ),
-        SubsetWarning::ReplicasDiffer { coefficient } => format!(
-            "the repetitions differ by {coefficient:.1} times the estimate: take more runs of a level"
-        ),
-    }
-}
-
-fn of_scores(warning: &SteeredWarning) -> String {
-    match warning {
-        SteeredWarning::NotReached { searches } => format!(
-            "{searches} searches did not come to the event: it cannot be, or is rarer than --least, or what is drawn from its own law \
-             decides; neither estimate nor interval should be trusted; take --method subset, or more runs of a level"
-        ),
-        SteeredWarning::MoreWays { searches } => format!(
-            "{searches} searches left open whether there are more ways to the event than they found: take more runs of a level, or \
-             --method subset"
-        ),
-        SteeredWarning::Weights(warning) => of_weights(warning),
-    }
-}
-
-fn of_weights(warning: &WeightWarning) -> String {
-    match warning {
-        WeightWarning::NoHit => {
-            "no run of the sample is the event: its probability is not known".to_owned()
-        }
-        WeightWarning::FewEffectiveHits { effective } => format!(
-            "the runs that are the event are worth only {effective:.1} of equal weight: neither estimate nor interval should be \
-             trusted; take a larger sample and more runs of a level, or --method subset"
-        ),
-        WeightWarning::OneHitDominates { share } => format!(
-            "one run makes up {:.0} % of the estimate: another such run may change it by as much",
-            100.0 * share
-        ),
-        WeightWarning::MeanWeightAboveOne { mean } => {
-            format!("the mean of all weights is {mean:.2}, and should be 1: the weights are wrong")
-        }
-    }
-}
-
-/// Finds how often an event happens.
+/// Finds how often an event happens, and says what a simulator wrote that nobody had asked for.
 pub(crate) fn find<C: Subject>(
     scenario: &C,
     event: &Event,
     options: &RareOptions,
     progress: Progress<'_>,
+    say: &dyn Fn(Notice),
 ) -> Result<Rare, StudyError> {
     let runs = EventRuns::new(scenario, event, options, progress)?;
     let (per_level, least) = (options.per_level, options.least);
+    let mut failures = Failures::default();
     let estimate = match options.method {
         RareMethod::Subset { replicas } => {
-            RareEstimate::Subset(subset::find(&runs, (per_level, replicas, least))?)
+            let plan = (per_level, replicas, least);
+            RareEstimate::Subset(subset::find(&runs, plan, &mut failures)?)
         }
         RareMethod::Importance { sample } => {
-            let estimate = importance::find(&runs, scenario.seed(), (per_level, sample, least))?;
+            let plan = (per_level, sample, least);
+            let estimate = importance::find(&runs, scenario.seed(), plan, &mut failures)?;
             let [steered, own_laws] = runs.groups().by_scores();
             RareEstimate::Importance { steered, own_laws, estimate }
         }
     };
+    runs.unasked().into_iter().for_each(|unasked| say(Notice::Unasked(unasked)));
+    let failed = failures.beside(estimate.probability(), estimate.interval())?;
+    let failed = failed.map(RareWarning::FailedRuns);
     Ok(Rare {
         scenario: scenario.name().to_owned(),
         model: runs.model().to_owned(),
         event: event.clone(),
         failed: runs.failed(),
         groups: runs.groups().names().to_vec(),
+        warnings: failed.into_iter().chain(estimate.warnings()).collect(),
         estimate,
     })
 }

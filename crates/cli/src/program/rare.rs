@@ -8,7 +8,7 @@ use crate::program::{
     output::{complain, print, print_json},
     progress,
     signals::Signals,
-    study::scenario,
+    study::{notice, scenario},
 };
 
 /// Runs the verb.
@@ -30,7 +30,8 @@ pub(crate) fn rare(arguments: &RareArgs) -> Result<ExitCode, Box<dyn Error>> {
     };
     let found = progress::show(most, what, |report| {
         // What takes more is not at its end yet.
-        scenario.rare(&arguments.event, &options, &|done| report(done.min(most.saturating_sub(1))))
+        let report = |done: u64| report(done.min(most.saturating_sub(1)));
+        scenario.rare(&arguments.event, &options, &report, &notice)
     });
     let found = match found {
         Err(StudyError::Campaign(CampaignError::Stopped)) => {

@@ -1,10 +1,10 @@
 //! Importance sampling: normal scores of runs are drawn from a law under which the event is less rare.
 
 use gyradius_statistics::{
-    Confidence, ScoreSearch, StatisticsError, SteeredEstimate, SteeredSampling,
+    Confidence, ImportanceSampling, ScoreSearch, StatisticsError, SteeredEstimate, SteeredSampling,
 };
 
-use super::runs::EventRuns;
+use super::{failed::Failures, runs::EventRuns};
 use crate::{ScenarioError, StudyError, groups::Drawing, steering::Steering, subject::Subject};
 
 /// Runs of the sample that are in memory at once.
@@ -13,11 +13,12 @@ const AT_ONCE: u64 = 10_000;
 const FEWEST: u64 = 100;
 const MOST: u64 = 1_000_000_000;
 
-/// With so many runs of a level and of the sample, down to this probability.
+/// With so many runs of a level and of the sample, down to this probability. Counts runs that fail.
 pub(super) fn find<C: Subject>(
     runs: &EventRuns<'_, C>,
     seed: u64,
     (per_level, sample, least): (usize, u64, f64),
+    failures: &mut Failures,
 ) -> Result<SteeredEstimate, StudyError> {
     if runs.groups().scored().is_empty() {
         let problem = format!(
@@ -43,18 +44,30 @@ pub(super) fn find<C: Subject>(
     while !search.is_done() {
         let count = search.asks() as u64;
         let drawing = Drawing::Steered(steering.with(search.law(), first).into());
-        search.tell(&runs.steered(drawing, count)?)?;
+        let scores = runs.scores(drawing.clone(), count)?;
+        let outcomes = runs.outcomes(drawing, count)?;
+        if search.law().is_own() {
+            failures.plain.add(&outcomes.failed);
+        }
+        search.tell(&scores.into_iter().zip(outcomes.excesses).collect::<Vec<_>>())?;
         first += count;
     }
     let mut sampling = SteeredSampling::new(&search)?;
+    let mut weighted = ImportanceSampling::new();
     let last = first + sample;
     while first < last {
         let count = AT_ONCE.min(last - first);
         let drawing = Drawing::Steered(steering.with(sampling.law(), first).into());
-        for (scores, excess) in runs.steered(drawing, count)? {
-            sampling.push(&scores, excess)?;
+        let all_scores = runs.scores(drawing.clone(), count)?;
+        let outcomes = runs.outcomes(drawing, count)?;
+        failures.nearer.add(&outcomes.failed);
+        let told = outcomes.excesses.into_iter().zip(outcomes.failed);
+        for (scores, (excess, failed)) in all_scores.iter().zip(told) {
+            sampling.push(scores, excess)?;
+            weighted.push(sampling.law().log_weight(scores), failed)?;
         }
         first += count;
     }
+    failures.weighted = Some(weighted);
     Ok(sampling.finish(Confidence::default())?)
 }

@@ -1,6 +1,8 @@
 //! Runs of a model that are done to look for an event.
 
-use gyradius_campaign::{CampaignError, Event, Progress, Simulation, Table, go_on, run, threads};
+use gyradius_campaign::{
+    CampaignError, Event, Progress, Simulation, Table, Unasked, go_on, run, threads,
+};
 use rayon::ThreadPool;
 use std::{
     cell::Cell,
@@ -28,6 +30,14 @@ pub(super) struct EventRuns<'a, C: Subject> {
     progress: Progress<'a>,
     done: Cell<u64>,
     failed: Cell<u64>,
+}
+
+/// What runs came to.
+pub(super) struct Outcomes {
+    /// By how much each is beyond the limit; NaN of a run without a number.
+    pub(super) excesses: Vec<f64>,
+    /// Whether it failed and has no number.
+    pub(super) failed: Vec<bool>,
 }
 
 impl<'a, C: Subject> EventRuns<'a, C> {
@@ -84,9 +94,14 @@ impl<'a, C: Subject> EventRuns<'a, C> {
         self.failed.get()
     }
 
-    /// By how much each of so many runs is beyond the limit; NaN of a run without a number. Refused if none of the first has one,
-    /// for then nothing leads to the event. Later ones may be few, as a step of few chains is, and have none by chance.
-    pub(super) fn excesses(&self, drawing: Drawing, runs: u64) -> Result<Vec<f64>, StudyError> {
+    /// What a simulator wrote that nobody had asked for.
+    pub(super) fn unasked(&self) -> Option<Unasked> {
+        self.scenario.unasked(&self.prepared)
+    }
+
+    /// What so many runs came to. Refused if none of the first has a number, for then nothing leads to the event. Later ones may be
+    /// few, as a step of few chains is, and have none by chance.
+    pub(super) fn outcomes(&self, drawing: Drawing, runs: u64) -> Result<Outcomes, StudyError> {
         go_on(self.stop.as_deref())?;
         let simulation = self.scenario.drawing(&self.prepared, self.at, drawing)?;
         let simulation = simulation.wanted(self.event.quantity().columns());
@@ -107,20 +122,24 @@ impl<'a, C: Subject> EventRuns<'a, C> {
             };
             return Err(ScenarioError::field("event", why).into());
         }
+        let mut without = vec![false; excesses.len()];
+        for (run, _) in table.failures() {
+            let place = usize::try_from(run).ok();
+            let lost = place.and_then(|place| without.get_mut(place).zip(excesses.get(place)));
+            // A run that failed for an infinite number has it.
+            if let Some((lost, excess)) = lost {
+                *lost = excess.is_nan();
+            }
+        }
         self.failed.set(self.failed.get() + failed);
         self.done.set(self.done.get() + runs);
         (self.progress)(self.done.get());
-        Ok(excesses)
+        Ok(Outcomes { excesses, failed: without })
     }
 
-    /// The same of runs that are steered, with the scores of each.
-    pub(super) fn steered(
-        &self,
-        drawing: Drawing,
-        runs: u64,
-    ) -> Result<Vec<(Vec<f64>, f64)>, StudyError> {
-        let simulation = self.scenario.drawing(&self.prepared, self.at, drawing.clone())?;
-        let drawn = simulation.steered(runs);
-        Ok(drawn.into_iter().zip(self.excesses(drawing, runs)?).collect())
+    /// The scores of so many runs that are steered.
+    pub(super) fn scores(&self, drawing: Drawing, runs: u64) -> Result<Vec<Vec<f64>>, StudyError> {
+        let simulation = self.scenario.drawing(&self.prepared, self.at, drawing)?;
+        Ok(simulation.steered(runs))
     }
 }

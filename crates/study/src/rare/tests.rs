@@ -1,5 +1,7 @@
 //! Importance sampling of separations against known probabilities, plain runs and subset simulation.
 
+mod functions;
+
 use gyradius_statistics::{Confidence, Proportion, SteeredWarning, WeightWarning, tail};
 
 use super::*;
@@ -30,14 +32,14 @@ fn options(method: RareMethod, per_level: usize) -> RareOptions {
 }
 
 fn rare(scenario: &Scenario, event: &str, options: &RareOptions) -> RareEstimate {
-    find(scenario, &event.parse().unwrap(), options, &|_| {}).unwrap().estimate().clone()
+    find(scenario, &event.parse().unwrap(), options, &|_| {}, &|_| {}).unwrap().estimate().clone()
 }
 
 /// The share of plain runs that are the event, with an interval of 99.9 %.
 fn plain(scenario: &Scenario, event: &str, count: u64) -> Interval {
     let event = event.parse().unwrap();
     let runs = EventRuns::new(scenario, &event, &RareOptions::default(), &|_| {}).unwrap();
-    let excesses = runs.excesses(Drawing::Plain, count).unwrap();
+    let excesses = runs.outcomes(Drawing::Plain, count).unwrap().excesses;
     let hits = excesses.iter().filter(|excess| **excess >= 0.0).count();
     println!("{event}: {hits} of {count}");
     Proportion::new(hits as u64, count).unwrap().interval(Confidence::new(0.999).unwrap())
@@ -110,8 +112,8 @@ fn what_is_weighed_is_what_was_drawn() {
     let event = "payload_mass_centre_3_m >= 0.05".parse().unwrap();
     let runs = EventRuns::new(&scenario, &event, &RareOptions::default(), &|_| {}).unwrap();
     let steering = Steering::new(scenario.seed(), runs.model(), runs.groups().scored());
-    let own = runs.excesses(Drawing::Steered(steering.clone().into()), 200).unwrap();
-    let plain = runs.excesses(Drawing::Plain, 200).unwrap();
+    let own = runs.outcomes(Drawing::Steered(steering.clone().into()), 200).unwrap().excesses;
+    let plain = runs.outcomes(Drawing::Plain, 200).unwrap().excesses;
     assert_eq!(
         own.iter().map(|x| x.to_bits()).collect::<Vec<_>>(),
         plain.iter().map(|x| x.to_bits()).collect::<Vec<_>>()
@@ -121,7 +123,9 @@ fn what_is_weighed_is_what_was_drawn() {
     let mut first = 0;
     while !search.is_done() {
         let drawing = Drawing::Steered(steering.with(search.law(), first).into());
-        let told = runs.steered(drawing, 300).unwrap();
+        let scores = runs.scores(drawing.clone(), 300).unwrap();
+        let excesses = runs.outcomes(drawing, 300).unwrap().excesses;
+        let told: Vec<_> = scores.into_iter().zip(excesses).collect();
         for (z, excess) in &told {
             // The first three scores are the mass centre's: the row of the factor of the coefficients 1, 0, 1/2; 0, 1, 1/2; 1/2, 1/2, 1.
             let value = 0.01 * (0.5 * z[0] + 0.5 * z[1] + 0.5_f64.sqrt() * z[2]);
@@ -142,7 +146,7 @@ fn runs_without_a_number_are_no_step() {
     let event = "spring_2_release_s >= 0.0".parse().unwrap();
     let plain = options(RareMethod::default(), 100);
     let runs = EventRuns::new(&failing, &event, &plain, &|_| {}).unwrap();
-    let mut times = runs.excesses(Drawing::Plain, 10_000).unwrap();
+    let mut times = runs.outcomes(Drawing::Plain, 10_000).unwrap().excesses;
     let undefined = times.iter().filter(|time| time.is_nan()).count();
     assert!((undefined as f64 / 10_000.0 - 0.3).abs() < 0.02, "{undefined}");
     times.retain(|time| !time.is_nan());
@@ -154,7 +158,8 @@ fn runs_without_a_number_are_no_step() {
         for seed in 0..5 {
             let failing = failing.clone().with_seed(seed).unwrap();
             let found =
-                find(&failing, &event.parse().unwrap(), &options(method, 100), &|_| {}).unwrap();
+                find(&failing, &event.parse().unwrap(), &options(method, 100), &|_| {}, &|_| {})
+                    .unwrap();
             let estimate = found.estimate();
             covered += u32::from(estimate.interval().contains(60.0 / 10_000.0));
             let without = estimate.without_excess();
@@ -197,17 +202,19 @@ fn threads_change_nothing_and_vehicles_are_steered() {
 fn what_cannot_be_found_is_told() {
     let steered = scenario(CORRELATED, SPRINGS);
     let method = RareMethod::Importance { sample: 2000 };
-    let found = rare(&steered, "payload_mass_centre_3_m >= 1", &options(method, 500));
+    let event = "payload_mass_centre_3_m >= 1".parse().unwrap();
+    let whole = find(&steered, &event, &options(method, 500), &|_| {}, &|_| {}).unwrap();
+    let found = whole.estimate();
     assert_eq!(found.probability(), 0.0);
     assert!(found.interval().upper() > 1e-3, "{found:?}");
-    let RareEstimate::Importance { estimate, .. } = &found else { panic!("{found:?}") };
+    let RareEstimate::Importance { estimate, .. } = found else { panic!("{found:?}") };
     let no_hit = SteeredWarning::Weights(WeightWarning::NoHit);
     assert_eq!(estimate.warnings(), [SteeredWarning::NotReached { searches: 2 }, no_hit]);
-    assert!(found.warnings()[0].contains("--method subset"), "{:?}", found.warnings());
+    assert!(whole.warnings_in_words()[0].contains("--method subset"), "{whole}");
 
     let refused = |scenario: &Scenario, options: &RareOptions| {
         let event = "cone_deg >= 5".parse().unwrap();
-        find(scenario, &event, options, &|_| {}).unwrap_err().to_string()
+        find(scenario, &event, options, &|_| {}, &|_| {}).unwrap_err().to_string()
     };
     let built_in = Scenario::peck_2003().unwrap();
     let said = refused(&built_in, &options(method, 1000));
@@ -252,7 +259,7 @@ fn what_nearly_always_happens_has_an_interval() {
     let scenario = scenario(CORRELATED, SPRINGS);
     let method = RareMethod::Subset { replicas: 10 };
     let event = "payload_mass_centre_3_m >= -0.05".parse().unwrap();
-    let found = find(&scenario, &event, &options(method, 200), &|_| {}).unwrap();
+    let found = find(&scenario, &event, &options(method, 200), &|_| {}, &|_| {}).unwrap();
     let estimate = found.estimate();
     let all = Proportion::new(2000, 2000).unwrap().interval(Confidence::default());
     assert_eq!((estimate.probability(), estimate.interval()), (1.0, all));

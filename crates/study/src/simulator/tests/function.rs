@@ -203,11 +203,15 @@ fn rare_events_and_shards_take_functions() {
     let event: Event = "y >= 0.7".parse().unwrap();
     let options = RareOptions { per_level: 100, ..RareOptions::default() };
     let [own, other] = [&function, &command].map(|scenario| {
-        serde_json::to_string(&scenario.rare(&event, &options, &|_| {}).unwrap()).unwrap()
+        serde_json::to_string(&scenario.rare(&event, &options, &|_| {}, &|_| {}).unwrap()).unwrap()
     });
     assert_eq!(own, other);
     assert!(
-        waiting.rare(&event, &options, &|_| {}).unwrap_err().to_string().contains("as the script")
+        waiting
+            .rare(&event, &options, &|_| {}, &|_| {})
+            .unwrap_err()
+            .to_string()
+            .contains("as the script")
     );
 
     let out = folder.path().join("shards");
@@ -253,12 +257,12 @@ fn a_rare_event_that_was_stopped_has_no_answer() {
         };
         calls.store(0, Ordering::Relaxed);
         last.store(u64::MAX, Ordering::Relaxed);
-        scenario.rare(&event, &options, &|_| {}).unwrap();
+        scenario.rare(&event, &options, &|_| {}, &|_| {}).unwrap();
         let all = calls.load(Ordering::Relaxed);
         for at in [1, 50, all / 2, all - 60, all] {
             calls.store(0, Ordering::Relaxed);
             last.store(at, Ordering::Relaxed);
-            let found = scenario.rare(&event, &options, &|_| {});
+            let found = scenario.rare(&event, &options, &|_| {}, &|_| {});
             let stopped = matches!(found, Err(StudyError::Campaign(CampaignError::Stopped)));
             assert!(stopped, "{method:?}, {at} of {all}: {found:?}");
             stop.store(false, Ordering::Relaxed);
