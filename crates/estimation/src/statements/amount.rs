@@ -308,7 +308,8 @@ mod tests {
     /// Every amount of every unit, of every part: it states something of its own alone.
     #[test]
     fn an_amount_states_nothing_of_another_part() {
-        let state: [(Part, fn(StatedAmount) -> Option<StatementError>); 5] = [
+        type Refusal = fn(StatedAmount) -> Option<StatementError>;
+        let state: [(Part, Refusal); 5] = [
             (Part::Mass, |amount| amount.mass_statement(1.0).err()),
             (Part::Centre, |amount| amount.centre_statement(1.0).err()),
             (Part::Moments, |amount| amount.moments_statement(1.0).err()),
