@@ -4,7 +4,8 @@ use gyradius_statistics::{Confidence, SobolIndices, SobolSums, StatisticsError};
 
 use crate::{
     requirement::{Measured, Requirement},
-    runs::{Runs, RunsError},
+    runs::Runs,
+    runs_error::RunsError,
     table::Table,
 };
 

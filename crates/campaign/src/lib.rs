@@ -79,6 +79,7 @@ mod origin;
 mod requirement;
 mod room;
 mod runs;
+mod runs_error;
 mod sample;
 mod shard;
 mod share;
@@ -125,7 +126,8 @@ pub use requirement::{
     share_in_percent, stated_in_percent,
 };
 pub use room::disk_left;
-pub use runs::{Runs, RunsError};
+pub use runs::Runs;
+pub use runs_error::RunsError;
 pub use sample::{SampleSummary, bounded, varies};
 pub use shard::{Shard, ShardError};
 pub use share::{Share, counted};

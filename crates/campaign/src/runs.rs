@@ -1,6 +1,5 @@
 //! The runs of a model, in blocks.
 
-use parquet::errors::ParquetError;
 use rayon::prelude::*;
 use std::{
     collections::BTreeSet,
@@ -9,7 +8,7 @@ use std::{
     sync::{Arc, atomic::AtomicBool},
 };
 
-use crate::{column::Column, stop::is_stopped, stored::said, table::Table};
+use crate::{column::Column, runs_error::RunsError, stop::is_stopped, table::Table};
 
 /// The runs of a model, in blocks of consecutive runs, some in memory and some on the disk.
 #[derive(Clone, Debug)]
@@ -182,27 +181,4 @@ impl From<Table> for Runs {
     fn from(table: Table) -> Self {
         Self::new(&table.from_run(0), Vec::new(), vec![table])
     }
-}
-
-impl RunsError {
-    pub(crate) fn of(path: &Path, problem: ParquetError) -> Self {
-        Self::Block { path: path.to_owned(), problem }
-    }
-}
-
-/// Why a block of runs cannot be read.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum RunsError {
-    /// It cannot be read.
-    #[error("{}: {}", path.display(), said(problem))]
-    Block {
-        /// Its file.
-        path: PathBuf,
-        /// Why.
-        problem: ParquetError,
-    },
-    /// They are looked at no further.
-    #[error("stopped")]
-    Stopped,
 }

@@ -12,7 +12,7 @@ use std::{
 use crate::{
     column::Column,
     folder::FolderError,
-    runs::RunsError,
+    runs_error::RunsError,
     stop::is_stopped,
     table::{Table, TableError},
 };

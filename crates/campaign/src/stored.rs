@@ -19,7 +19,7 @@ use crate::{
     column::{Column, Kind},
     failure::{Failure, OK},
     kept::Kept,
-    runs::RunsError,
+    runs_error::RunsError,
     table::{Source, Table, Values},
 };
 
@@ -301,14 +301,6 @@ fn write_levels<T: DataType, W: Write + Send>(
         writer.close()?;
     }
     Ok(())
-}
-
-/// What is wrong, without what only says that the library did not find it.
-pub(crate) fn said(error: &ParquetError) -> String {
-    match error {
-        ParquetError::External(cause) => cause.to_string(),
-        other => other.to_string(),
-    }
 }
 
 pub(crate) fn open(path: &Path) -> Result<SerializedFileReader<File>, ParquetError> {

@@ -6,7 +6,8 @@ use std::{collections::BTreeMap, mem, sync::Mutex};
 
 use crate::{
     column::{Column, Kind},
-    runs::{Runs, RunsError},
+    runs::Runs,
+    runs_error::RunsError,
     sample::surveyed,
     subset::Subset,
     table::Table,

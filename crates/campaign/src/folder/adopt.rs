@@ -14,8 +14,8 @@ use super::{
     told::published,
 };
 use crate::{
-    hash::sha256, identity::Identity, kept::Kept, requirement::Counting, stop::is_stopped, stored,
-    table::Table,
+    hash::sha256, identity::Identity, kept::Kept, requirement::Counting, runs_error,
+    stop::is_stopped, table::Table,
 };
 
 /// A complete campaign of which not all rows and columns were kept: nobody can go on with it.
@@ -84,7 +84,7 @@ impl Folder<'_> {
                 Some(empty) => {
                     let table = empty.read_block(&blocks.path(block));
                     table.and_then(|table| table.kept_parquet(kept)).map_err(|error| {
-                        Problem::Block { name: block.name(), problem: stored::said(&error) }
+                        Problem::Block { name: block.name(), problem: runs_error::said(&error) }
                     })
                 }
             };

@@ -32,8 +32,8 @@ use crate::{
     hash::hex,
     identity::{Difference, Identity},
     runs::Runs,
+    runs_error,
     shard::Shard,
-    stored,
     table::Table,
 };
 
@@ -385,7 +385,10 @@ impl Blocks {
         let mut file = Hashed { to: disk::create_file(&part)?, sha: Sha256::new(), bytes: 0 };
         let written = table
             .write_parquet(BufWriter::new(&mut file))
-            .map_err(|error| Problem::Block { name: block.name(), problem: stored::said(&error) })
+            .map_err(|error| Problem::Block {
+                name: block.name(),
+                problem: runs_error::said(&error),
+            })
             .and_then(|()| Ok(disk::sync_file(&part)?));
         if let Err(problem) = written {
             let _ = disk::remove_file(&part);

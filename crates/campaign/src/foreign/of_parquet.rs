@@ -12,7 +12,8 @@ use std::{collections::HashMap, fs::File, path::Path};
 use super::{Columns, ForeignError, places, status};
 use crate::{
     failure::{Failure, OK},
-    stored::{read, said},
+    runs_error::said,
+    stored::read,
 };
 
 pub(super) fn parquet_columns(path: &Path) -> Result<Vec<String>, ForeignError> {

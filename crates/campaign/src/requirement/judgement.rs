@@ -22,7 +22,7 @@ use crate::{
     folder::is_zero,
     foreign::{ForeignError, RowsError, TwiceError},
     number::plain,
-    runs::RunsError,
+    runs_error::RunsError,
 };
 
 /// What runs say of a requirement.
