@@ -226,7 +226,9 @@ impl ScalarLawForm {
         let given = Given { law: law.name, nominal, values };
         (law.read)(&given).map_err(|error| {
             let missing = matches!(error, ScalarLawError::Missing { .. });
-            let problem = error.to_string();
+            let or_variance =
+                missing && error.key() == Some("sigma") && law.key("variance").is_some();
+            let problem = format!("{error}{}", if or_variance { " or variance" } else { "" });
             let key = if self.bare { None } else { error.key() };
             Refused { inner: ScalarLawFormError { key, problem }, made: !missing && !self.bare }
         })
@@ -420,11 +422,11 @@ mod tests {
         let form = |text: &str| serde_json::from_str::<ScalarLawForm>(text).unwrap();
         let normal = form(r#"{"law":"normal"}"#);
         let single = normal.about(1.0, LawUnit::OWN).unwrap_err().to_string();
-        assert!(single.ends_with("needs sigma"), "{single}");
+        assert!(single.ends_with("needs sigma or variance"), "{single}");
         let of_vector = normal.about_component(1.0, LawUnit::OWN).unwrap_err().to_string();
         assert!(
             of_vector.ends_with(
-                "needs sigma, or, as the law of all three components of a vector, covariance"
+                "needs sigma or variance, or, as the law of all three components of a vector, covariance"
             ),
             "{of_vector}"
         );

@@ -53,7 +53,7 @@ fn refusals_name_their_key() {
     let message =
         |text: &str| SimulatorScenario::from_toml(text, folder.path()).unwrap_err().to_string();
     let scalar = message(&(uniform() + &quantity("z", "{ law = \"normal\", mean = 1.0 }")));
-    assert!(scalar.ends_with("law = \"normal\" needs sigma"), "{scalar}");
+    assert!(scalar.ends_with("law = \"normal\" needs sigma or variance"), "{scalar}");
     for [dispersion, key] in cases(
         r#"
         mass_centre_m = 0.1 | bodies[1].dispersion.mass_centre_m
