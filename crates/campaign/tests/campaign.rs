@@ -210,7 +210,8 @@ fn what_cannot_be_is_refused() {
     for names in [["run", "x"], ["x", "x"], ["", "x"], ["x", "status"], ["model", "x"]] {
         let columns = names.map(|name| Column::number(name, "1", "")).to_vec();
         let error = Table::new("m", 0, columns).unwrap_err().to_string();
-        assert!(error.contains("no other column"), "{error}");
+        let why = if names[0].is_empty() { "must have a name" } else { "another column" };
+        assert!(error.contains(why), "{error}");
     }
     for count in [0, 1025, usize::MAX] {
         let error = threads(Some(count)).unwrap_err().to_string();
