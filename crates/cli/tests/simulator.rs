@@ -20,7 +20,7 @@ while read -r line; do
     esac
 done
 "#;
-const SCENARIO: &str = r#"
+pub(crate) const SCENARIO: &str = r#"
 name = "shell"
 runs = 4000
 seed = 5
@@ -36,7 +36,7 @@ name = "x"
 law = { law = "uniform", low = 0.1, high = 0.95 }
 "#;
 
-fn scratch() -> Scratch {
+pub(crate) fn scratch() -> Scratch {
     let scratch = Scratch::new();
     fs::write(scratch.path("answer.sh"), SCRIPT).unwrap();
     fs::write(scratch.path("s.toml"), SCENARIO).unwrap();

@@ -2,30 +2,10 @@
 
 use std::{fs, path::Path};
 
-use crate::scratch::{Scratch, files};
-
-const SCRIPT: &str = r#"
-while read -r line; do x=${line##*'"x":'}; x=${x%%[,\}]*}; echo "{\"outputs\":{\"y\":$x}}"; done
-"#;
-const SCENARIO: &str = r#"
-name = "shell"
-runs = 40
-[simulation]
-command = ["sh", "answer.sh"]
-[[simulation.outputs]]
-name = "y"
-[[quantities]]
-name = "x"
-law = { law = "normal", mean = 4, sigma = 1 }
-"#;
-
-/// A folder with the scenario of a separation, and one of a simulator with its script.
-fn scratch() -> Scratch {
-    let scratch = Scratch::new();
-    fs::write(scratch.path("answer.sh"), SCRIPT).unwrap();
-    fs::write(scratch.path("s.toml"), SCENARIO).unwrap();
-    scratch
-}
+use crate::{
+    scratch::files,
+    simulator::{SCENARIO, scratch},
+};
 
 fn copy(from: &Path, to: &Path) {
     fs::create_dir(to).unwrap();
@@ -44,8 +24,8 @@ fn copy(from: &Path, to: &Path) {
 fn every_verb_names_the_file_that_was_changed() {
     let scratch = scratch();
     let separation = ["study", "--runs", "40", "-q", "--out"];
-    let simulator = ["study", "s.toml", "-q", "--out"];
-    for (study, law) in [(&separation[..], "stiffness"), (&simulator, "sigma = 1")] {
+    let simulator = ["study", "s.toml", "--runs", "40", "-q", "--out"];
+    for (study, law) in [(&separation[..], "stiffness"), (&simulator, "uniform")] {
         let study_in = |out: &'static str| [study, &[out]].concat();
         let whole = scratch.path("whole");
         scratch.done(&study_in("whole"), 0);
@@ -99,9 +79,9 @@ fn every_verb_names_the_file_that_was_changed() {
 #[test]
 fn runs_that_are_not_kept_do_not_stay() {
     let scratch = scratch();
-    let none = SCENARIO.replace("runs = 40", "runs = 40\nrows = \"none\"");
+    let none = SCENARIO.replace("runs = 4000", "runs = 40\nrows = \"none\"");
     fs::write(scratch.path("none.toml"), &none).unwrap();
-    fs::write(scratch.path("more.toml"), none.replace("runs = 40", "runs = 40\nseed = 9")).unwrap();
+    fs::write(scratch.path("more.toml"), none.replace("seed = 5", "seed = 9")).unwrap();
     let study = |scenario, out| scratch.done(&["study", scenario, "-q", "--out", out], 0);
     study("none.toml", "it");
     let whole = files(&scratch.path("it"));

@@ -99,8 +99,8 @@ impl Processes {
         let changed = self.files().iter().find(|file| !file.is_as_it_was())?;
         let word = self.program.words()[changed.place].to_string_lossy();
         Some(format!(
-            "the file {word:?}, which the command of the simulator names, was changed while runs were done: runs of both would not go \
-             together"
+            "the file {word:?}, which the command of the simulator names, was changed while runs were done, and runs of both would not go \
+             together (what the simulator writes itself must not stand in its command)"
         ))
     }
 
