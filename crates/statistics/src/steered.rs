@@ -8,7 +8,7 @@ mod way;
 pub use score_law::ScoreLaw;
 pub use search::ScoreSearch;
 
-use score_law::LogParts;
+use score_law::{LogParts, OWN};
 
 use crate::{
     Confidence, ImportanceEstimate, ImportanceSampling, Interval, Proportion, StatisticsError,
@@ -106,6 +106,10 @@ impl SteeredSampling {
     /// [`StatisticsError::Columns`] if there are not as many scores as the law has, [`StatisticsError::LogWeight`] if one is not finite.
     pub fn push(&mut self, scores: &[f64], excess: f64) -> Result<(), StatisticsError> {
         crate::rank_correlation::same_length(self.law.scores(), scores.len())?;
+        // The own law weighs them without a look at them.
+        if let Some(&value) = scores.iter().find(|x| !x.is_finite()) {
+            return Err(StatisticsError::LogWeight { value, most: -OWN.ln() });
+        }
         self.hits.push(self.log_parts.log_weight(scores), excess >= 0.0)?;
         self.evaluations += 1;
         self.without_excess += u64::from(excess.is_nan());
@@ -126,7 +130,11 @@ impl SteeredSampling {
         }
         warnings.extend(self.unsettled.map(|searches| SteeredWarning::MoreWays { searches }));
         warnings.extend(weighted.warnings().iter().copied().map(SteeredWarning::Weights));
-        let (lower, upper) = if weighted.hits() > 0 {
+        let (lower, upper) = if self.law.is_own() {
+            // Plain runs, of which the interval is exact.
+            let plain = Proportion::new(weighted.hits(), weighted.runs())?.interval(confidence);
+            (plain.lower(), plain.upper())
+        } else if weighted.hits() > 0 {
             (weighted.interval().lower(), weighted.interval().upper())
         } else {
             // No hit in so many runs, and no weight is larger than this.

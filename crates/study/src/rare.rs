@@ -208,9 +208,12 @@ impl fmt::Display for Rare {
         match estimate {
             RareEstimate::Subset(_) => writeln!(f, "  groups       {}", groups.join("; "))?,
             RareEstimate::Importance { steered, own_laws, .. } => {
-                writeln!(f, "  steered      {}", steered.join("; "))?;
-                let own = if own_laws.is_empty() { "none".to_owned() } else { own_laws.join("; ") };
-                writeln!(f, "  own laws     {own}")?;
+                let named = |groups: &[String]| match groups {
+                    [] => "none".to_owned(),
+                    some => some.join("; "),
+                };
+                writeln!(f, "  steered      {}", named(steered))?;
+                writeln!(f, "  own laws     {}", named(own_laws))?;
             }
         }
         for warning in self.warnings_in_words() {
@@ -247,8 +250,12 @@ pub(crate) fn find<C: Subject>(
         }
         RareMethod::Importance { sample } => {
             let plan = (per_level, sample, least);
-            let estimate = importance::find(&runs, scenario.seed(), plan, &mut failures)?;
-            let [steered, own_laws] = runs.groups().by_scores();
+            let (estimate, is_steered) =
+                importance::find(&runs, scenario.seed(), plan, &mut failures)?;
+            let [steered, own_laws] = match is_steered {
+                true => runs.groups().by_scores(),
+                false => [Vec::new(), runs.groups().names().to_vec()],
+            };
             RareEstimate::Importance { steered, own_laws, estimate }
         }
     };

@@ -6,6 +6,8 @@ use super::{
 };
 use crate::StatisticsError;
 
+/// Nothing is searched for if one of so many plain runs is the event.
+const FREQUENT: usize = 10;
 /// So many searches know nothing of each other.
 const INDEPENDENT: usize = 2;
 /// Most searches.
@@ -18,7 +20,7 @@ const MOST_LOST: usize = 3;
 /// A search for the law of scores under which an event is least rare, by the cross-entropy method (Rubinstein & Kroese 2004,
 /// doi:10.1007/978-1-4757-4321-0), in steps: it asks for runs, which may be done in any order, and is told their outcomes.
 ///
-/// The first level has plain runs. The tenth of them that comes nearest to the event leads on: the next law is fitted to
+/// The first level has plain runs. If a tenth of them are the event, it is not rare: the search ends, and nothing is steered. Else the tenth of them that comes nearest to the event leads on: the next law is fitted to
 /// their scores, weighted as the own law has them, and a tenth of the own law is kept. Fewer lead on, 30, where a tenth comes no nearer: where most
 /// runs draw what no score leads to. Level by level the runs come nearer, until 30 or more are the event. Two last levels then fit
 /// the law to all runs that are the event.
@@ -110,8 +112,14 @@ impl ScoreSearch {
             return crate::rank_correlation::same_length(0, runs.len());
         };
         now.tell(runs)?;
+        let is_first = self.evaluations == 0 && self.law.is_own();
         self.evaluations += runs.len() as u64;
         self.without_excess += runs.iter().filter(|run| run.1.is_nan()).count() as u64;
+        let events = runs.iter().filter(|run| run.1 >= 0.0).count();
+        if is_first && FREQUENT * events >= runs.len() {
+            self.now = None;
+            return Ok(());
+        }
         if now.ended().is_some() {
             self.done.extend(self.now.take());
             let next = self.plan.clone();

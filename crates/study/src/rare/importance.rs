@@ -13,13 +13,14 @@ const AT_ONCE: u64 = 10_000;
 const FEWEST: u64 = 100;
 const MOST: u64 = 1_000_000_000;
 
-/// With so many runs of a level and of the sample, down to this probability. Counts runs that fail.
+/// With so many runs of a level and of the sample, down to this probability; and whether anything was steered, which it is not for an
+/// event that is not rare. Counts runs that fail.
 pub(super) fn find<C: Subject>(
     runs: &EventRuns<'_, C>,
     seed: u64,
     (per_level, sample, least): (usize, u64, f64),
     failures: &mut Failures,
-) -> Result<SteeredEstimate, StudyError> {
+) -> Result<(SteeredEstimate, bool), StudyError> {
     if runs.groups().scored().is_empty() {
         let problem = format!(
             "importance: nothing that the model {} draws is drawn by a normal score, which masses, mass centres, springs and quantities \
@@ -69,5 +70,5 @@ pub(super) fn find<C: Subject>(
         first += count;
     }
     failures.weighted = Some(weighted);
-    Ok(sampling.finish(Confidence::default())?)
+    Ok((sampling.finish(Confidence::default())?, !search.law().is_own()))
 }

@@ -70,6 +70,23 @@ fn known_probabilities_are_covered() {
     }
 }
 
+/// An event that is not rare costs a level and the sample, and nothing is said to be steered.
+#[test]
+fn nothing_is_steered_for_what_is_not_rare() {
+    let scenario = scenario(CORRELATED, SPRINGS);
+    let method = RareMethod::Importance { sample: 1500 };
+    let event = "payload_mass_centre_3_m >= 0".parse().unwrap();
+    let found = find(&scenario, &event, &options(method, 1000), &|_| {}, &|_| {}).unwrap();
+    let text = found.to_string();
+    assert!(text.contains("steered      none\n") && !text.contains("warning"), "{text}");
+    assert_eq!(found.estimate().evaluations(), 2500);
+    assert!(found.estimate().interval().contains(0.5), "{text}");
+    let RareEstimate::Importance { steered, own_laws, .. } = found.estimate() else {
+        panic!("{text}")
+    };
+    assert!(steered.is_empty() && own_laws.contains(&"payload mass centre".to_owned()), "{text}");
+}
+
 /// Springs that fail twice, in any of six pairs, and an event in which axes decide that no score steers.
 #[test]
 fn discrete_and_unsteered_inputs_are_right() {
