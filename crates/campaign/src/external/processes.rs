@@ -160,17 +160,25 @@ impl Processes {
             }
             result
         };
+        // What came in the place of the answer, which was there already or came late.
+        let mut beside = None;
         if let Some(mut child) = kept.take() {
             if child.is_quiet() {
                 let result = ask(child, kept);
                 if kept.is_some() || matches!(result, Err(Trouble::Stopped)) {
                     return result;
                 }
+                beside = result.err().and_then(Trouble::into_unasked);
             } else if !child.unasked().is_empty() {
                 self.note(child.unasked());
             }
         }
-        ask(Child::start(&self.program).map_err(Trouble::Start)?, kept)
+        let result = ask(Child::start(&self.program).map_err(Trouble::Start)?, kept);
+        // Asked alone, it answers: that was no answer to this run.
+        if let (Some(text), true) = (beside, kept.is_some()) {
+            self.note(&text);
+        }
+        result
     }
 
     /// Notes that a process wrote what nobody had asked for.

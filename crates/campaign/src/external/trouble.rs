@@ -90,6 +90,32 @@ impl Trouble {
         infinite
     }
 
+    /// What was written that is no answer to the run, if something was.
+    pub(super) fn into_unasked(self) -> Option<Vec<u8>> {
+        match self {
+            Self::Early { text } | Self::NotJson { line: text, .. } => Some(text),
+            Self::OutOfTurn { answered } => Some(format!("{{\"run\":{answered},…").into_bytes()),
+            Self::Input { .. }
+            | Self::Start(_)
+            | Self::Files(_)
+            | Self::Timeout { .. }
+            | Self::Stopped
+            | Self::Ended { .. }
+            | Self::Closed { .. }
+            | Self::TooLong { .. }
+            | Self::NoFile
+            | Self::NotAFile { .. }
+            | Self::NotJsonFile { .. }
+            | Self::Missing { .. }
+            | Self::Repeated { .. }
+            | Self::Unknown { .. }
+            | Self::NotFinite { .. }
+            | Self::OutputsOrError
+            | Self::Error { .. }
+            | Self::Panicked { .. } => None,
+        }
+    }
+
     /// The same, of an answer that stands in a file.
     pub(super) fn in_a_file(self) -> Self {
         match self {
