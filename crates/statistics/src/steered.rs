@@ -98,22 +98,23 @@ impl SteeredSampling {
         })
     }
 
-    /// Adds a run: its scores, and how far it is beyond the limit. The event is an excess of 0 or more; NaN is a run that has none, as
+    /// Adds a run: its scores, and how far it is beyond the limit. Returns the natural logarithm of its weight. The event is an excess of 0 or more; NaN is a run that has none, as
     /// one that failed, and is not the event.
     ///
     /// # Errors
     ///
     /// [`StatisticsError::Columns`] if there are not as many scores as the law has, [`StatisticsError::LogWeight`] if one is not finite.
-    pub fn push(&mut self, scores: &[f64], excess: f64) -> Result<(), StatisticsError> {
+    pub fn push(&mut self, scores: &[f64], excess: f64) -> Result<f64, StatisticsError> {
         crate::rank_correlation::same_length(self.law.scores(), scores.len())?;
         // The own law weighs them without a look at them.
         if let Some(&value) = scores.iter().find(|x| !x.is_finite()) {
             return Err(StatisticsError::LogWeight { value, most: -OWN.ln() });
         }
-        self.hits.push(self.log_parts.log_weight(scores), excess >= 0.0)?;
+        let log_weight = self.log_parts.log_weight(scores);
+        self.hits.push(log_weight, excess >= 0.0)?;
         self.evaluations += 1;
         self.without_excess += u64::from(excess.is_nan());
-        Ok(())
+        Ok(log_weight)
     }
 
     /// What the runs show.

@@ -130,23 +130,13 @@ pub(crate) fn read<C: Subject>(folder: &Path) -> Result<Results<C, C::Summary>, 
     restore(folder)?;
     let (file, written) = (folder.join("scenario.toml"), folder.join("summary.json"));
     let changed = |names: &[&str]| changed(folder, "study", names);
-    if !written.is_file()
-        && file.is_file()
-        && let Some(gone) = changed(&["summary.json"])?
-    {
+    if !file.is_file() {
+        return Err(problem(changed(&["scenario.toml"])?.unwrap_or_else(no_study)));
+    }
+    if !written.is_file() {
         let again = "the command that made the study puts its runs together again";
-        return Err(problem(format!("{gone}: {again}")));
-    }
-    if !file.is_file()
-        && let Some(gone) = changed(&["scenario.toml"])?
-    {
-        return Err(problem(gone));
-    }
-    if !file.is_file() || !written.is_file() {
-        return Err(problem(
-                "it holds no study, which has a scenario.toml and a summary.json; name the folder of one"
-                    .to_owned(),
-            ));
+        let gone = changed(&["summary.json"])?.map(|gone| format!("{gone}: {again}"));
+        return Err(problem(gone.unwrap_or_else(no_study)));
     }
     let no_summary = |e: serde_json::Error| problem(format!("summary.json is no summary: {e}"));
     let text = read_text(&written, BYTES)
@@ -174,6 +164,12 @@ pub(crate) fn read<C: Subject>(folder: &Path) -> Result<Results<C, C::Summary>, 
     }
     let summary = serde_json::from_str(&text).map_err(no_summary)?;
     Ok(Results { folder: folder.to_owned(), scenario, summary })
+}
+
+/// What is wrong with a folder in which none was ever written.
+fn no_study() -> String {
+    "it holds no study, which has a scenario.toml and a summary.json; name the folder of one"
+        .to_owned()
 }
 
 /// Whether two paths lead to the same folder.

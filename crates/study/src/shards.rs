@@ -210,8 +210,9 @@ impl Status {
             missing.extend(gaps.into_iter().map(|runs| Missing::new(model, runs)));
         }
         let changed = match begun(folder) {
-            None => changed(folder, "study", &["scenario.toml", "summary.json"])?,
-            // They are written when all is put together.
+            // The scenario is this one.
+            None => changed(folder, "study", &["summary.json"])?,
+            // It is written when all is put together.
             Some(_) => None,
         };
         Ok(Self {

@@ -51,7 +51,7 @@ pub(super) fn read(answer: &[u8], run: u64, outputs: &[Column]) -> Result<Vec<f6
         }
     };
     if let Some(answered) = parsed.run.filter(|answered| *answered != run) {
-        return Err(Trouble::OutOfTurn { answered });
+        return Err(Trouble::OutOfTurn { answered, line: answer.to_vec() });
     }
     let found = match (parsed.outputs, parsed.error) {
         (Some(found), None) => found.0,

@@ -35,7 +35,7 @@ pub(super) struct Processes {
     /// The files that the command names, as they were when they were first looked at.
     files: OnceLock<Vec<NamedFile>>,
     /// Why the temporary folder of a run could not be used, if one could not.
-    no_folder: Mutex<Option<String>>,
+    no_folder: OnceLock<String>,
 }
 
 /// What processes of a simulator wrote to standard output that nobody had asked for. Each was ended for it before its next run,
@@ -80,7 +80,7 @@ impl Processes {
             idle: Mutex::default(),
             unasked: Mutex::default(),
             files: OnceLock::new(),
-            no_folder: Mutex::default(),
+            no_folder: OnceLock::new(),
         }
     }
 
@@ -92,9 +92,8 @@ impl Processes {
     /// Why runs that were done since then do not count: a file of the command has changed, or there is no temporary folder, of which no
     /// run is to blame.
     pub(super) fn fault(&self) -> Option<String> {
-        if let Some(problem) = self.no_folder.lock().unwrap_or_else(PoisonError::into_inner).clone()
-        {
-            return Some(problem);
+        if let Some(problem) = self.no_folder.get() {
+            return Some(problem.clone());
         }
         let changed = self.files().iter().find(|file| !file.is_as_it_was())?;
         let word = self.program.words()[changed.place].to_string_lossy();
@@ -198,9 +197,9 @@ impl Processes {
         let place = std::env::temp_dir();
         // Without the name of the folder, which is another one each time.
         let error = error.raw_os_error().map_or(error, io::Error::from_raw_os_error);
-        let problem =
-            format!("a temporary folder for a run cannot be used in {}: {error}", place.display());
-        *self.no_folder.lock().unwrap_or_else(PoisonError::into_inner) = Some(problem);
+        self.no_folder.get_or_init(|| {
+            format!("a temporary folder for a run cannot be used in {}: {error}", place.display())
+        });
         Trouble::Files(error)
     }
 

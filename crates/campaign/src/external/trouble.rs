@@ -30,7 +30,7 @@ pub(super) enum Trouble {
     /// There was something on standard output before the process read the run.
     Early { text: Vec<u8> },
     /// The answer is of another run.
-    OutOfTurn { answered: u64 },
+    OutOfTurn { answered: u64, line: Vec<u8> },
     /// The process ended well and left no answer.
     NoFile,
     /// What stands in the place of the file with the answer is no regular file.
@@ -92,28 +92,13 @@ impl Trouble {
 
     /// What was written that is no answer to the run, if something was.
     pub(super) fn into_unasked(self) -> Option<Vec<u8>> {
-        match self {
-            Self::Early { text } | Self::NotJson { line: text, .. } => Some(text),
-            Self::OutOfTurn { answered } => Some(format!("{{\"run\":{answered},…").into_bytes()),
-            Self::Input { .. }
-            | Self::Start(_)
-            | Self::Files(_)
-            | Self::Timeout { .. }
-            | Self::Stopped
-            | Self::Ended { .. }
-            | Self::Closed { .. }
-            | Self::TooLong { .. }
-            | Self::NoFile
-            | Self::NotAFile { .. }
-            | Self::NotJsonFile { .. }
-            | Self::Missing { .. }
-            | Self::Repeated { .. }
-            | Self::Unknown { .. }
-            | Self::NotFinite { .. }
-            | Self::OutputsOrError
-            | Self::Error { .. }
-            | Self::Panicked { .. } => None,
-        }
+        let (Self::Early { text: written }
+        | Self::NotJson { line: written, .. }
+        | Self::OutOfTurn { line: written, .. }) = self
+        else {
+            return None;
+        };
+        Some(written)
     }
 
     /// The same, of an answer that stands in a file.
@@ -170,7 +155,7 @@ impl Trouble {
                     shown(&text, 80)
                 ),
             ),
-            Self::OutOfTurn { answered } => {
+            Self::OutOfTurn { answered, .. } => {
                 ("an answer out of turn", format!("the answer is that of run {answered}"))
             }
             Self::NoFile => (

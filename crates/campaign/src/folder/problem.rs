@@ -89,7 +89,7 @@ pub(crate) enum Problem {
     )]
     Foreign { name: Name },
     #[error(
-        "{name} in it, which tells whose it is, is not there any more: put it back, choose another folder with --out, or pass --force \
+        "{name} in it, which says what the folder holds, is not there any more: put it back, choose another folder with --out, or pass --force \
          to replace what a {what} wrote there"
     )]
     Gone { name: Name, what: &'static str },

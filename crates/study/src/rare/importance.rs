@@ -64,8 +64,7 @@ pub(super) fn find<C: Subject>(
         failures.nearer.add(&outcomes.failed);
         let told = outcomes.excesses.into_iter().zip(outcomes.failed);
         for (scores, (excess, failed)) in all_scores.iter().zip(told) {
-            sampling.push(scores, excess)?;
-            weighted.push(sampling.law().log_weight(scores), failed)?;
+            weighted.push(sampling.push(scores, excess)?, failed)?;
         }
         first += count;
     }
