@@ -89,3 +89,30 @@ fn matter_stays_inside_of_the_geometry() {
     let message = refused(&shell, &[&stated[..], &["--inside", "box"]].concat());
     assert!(message.contains("its nominal numbers are not"), "{message}");
 }
+
+/// Of each link every warning is told, not the first of its kind alone: here of two second moments, the worse one last.
+#[test]
+fn no_warning_of_a_link_is_left_out() {
+    let shell = Scratch::new();
+    let link = |name: &str, [a, b, c]: [&str; 3]| {
+        format!(
+            "<link name='{name}'><inertial><mass value='1'/><inertia ixx='{a}' ixy='0' ixz='0' iyy='{b}' iyz='0' izz='{c}'/>\
+             </inertial></link>"
+        )
+    };
+    let [a, b] = [["0.01", "0.02", "0.025"], ["0.0101", "0.025", "0.02"]];
+    let robot = format!("<robot name='a'>{}{}</robot>", link("a", a), link("b", b));
+    fs::write(shell.path("a.urdf"), robot).unwrap();
+    let output = shell.run(&["draw", "a.urdf", "-n", "2", "--moments", "15%", "--axes", "0deg"]);
+    let told = String::from_utf8(output.stderr).unwrap();
+    let in_full = |axis: u32| {
+        told.lines().any(|line| {
+            line.starts_with("warning: a: the moments as stated contradict realizability")
+                && line.contains(&format!("(K{axis} < 0)"))
+        })
+    };
+    assert!(in_full(2) && in_full(3), "{told}");
+    let others =
+        |line: &str| line.starts_with("         also for b (K2: ") && line.contains("; K3: ");
+    assert!(told.lines().any(others), "{told}");
+}

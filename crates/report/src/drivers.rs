@@ -6,10 +6,10 @@ use crate::style::{self, MARGIN};
 use crate::svg::{Anchor, Look, Svg, px};
 use crate::text::{fit, significant};
 
-const WIDTH: f64 = 480.0;
+const WIDTH: f64 = 540.0;
 const WIDEST: f64 = 640.0;
 /// Room of the names of groups, and of the number after a bar.
-const NAMES: f64 = 168.0;
+const NAMES: f64 = 228.0;
 const NUMBER: f64 = 46.0;
 const ACROSS: f64 = WIDTH - 2.0 * MARGIN - NAMES - NUMBER;
 const ROW: f64 = 27.0;

@@ -102,7 +102,9 @@ impl Svg {
 
     /// The whole document. Without a title it is called by its description.
     pub(crate) fn finish(self, size: (f64, f64), title: &str, description: &str) -> String {
-        self.whole("max-width:100%;height:auto", size, title, description)
+        // Letters do not grow larger than those of the page.
+        let style = format!("max-width:min(100%,{}px);height:auto", px((1.25 * size.0).ceil()));
+        self.whole(&style, size, title, description)
     }
 
     /// The same, which is as wide as the page, but no wider than so many pixels.

@@ -6,7 +6,7 @@ use gyradius_campaign::{
     rounded_down, stated_in_percent,
 };
 use gyradius_report::{
-    Drawing, PageCell, PageTable, Section, Text, convergence_figure, distribution_figure,
+    Drawing, PageCell, PageTable, Section, Text, Tone, convergence_figure, distribution_figure,
     significant,
 };
 use gyradius_statistics::Verdict;
@@ -421,17 +421,17 @@ fn told_unusual(judged: &Judged, run: u64) -> PageCell {
 fn verdict(judged: &Judged) -> PageCell {
     let judgement = &judged.judgement;
     match judgement.verdict() {
-        Verdict::Met => PageCell::from(Text::default().strong("met")),
-        Verdict::NotMet => PageCell::from(Text::default().strong("not met")),
+        Verdict::Met => PageCell::from(Text::default().badge(Tone::Good, "met")),
+        Verdict::NotMet => PageCell::from(Text::default().badge(Tone::Bad, "not met")),
         Verdict::Undecided { if_no_more_fail, at_this_rate } => {
-            let cell = PageCell::from(Text::default().strong("not decided"));
+            let cell = PageCell::from(Text::default().badge(Tone::Open, "not decided"));
             let more = |runs: u64, how: &str| {
                 Text::default().quiet(format!("{runs} more {} {how}", judgement.unit_of_more(runs)))
             };
             let all = if_no_more_fail.map(|runs| more(runs, "if all keep it"));
             let rate = at_this_rate.map(|runs| more(runs, "if failures go on at this rate"));
             let again = judgement.asks_for_another_look().then(|| {
-                let said = "judging a second time adds a risk of its own; --until counts all looks";
+                let said = "judging a second time adds a risk of its own; [until] of the scenario counts all looks";
                 Text::default().quiet(said)
             });
             all.into_iter().chain(rate).chain(again).fold(cell, PageCell::line)

@@ -240,11 +240,10 @@ impl Groups {
 
 /// What a group is called: after the parts in it.
 fn called<'a>(members: impl Iterator<Item = &'a str>) -> String {
-    let mut parts: Vec<String> = Vec::new();
+    let mut parts: Vec<&str> = Vec::new();
     for member in members {
-        let part = member.replace('_', " ");
-        if !parts.contains(&part) {
-            parts.push(part);
+        if !parts.contains(&member) {
+            parts.push(member);
         }
     }
     let more = parts.len().saturating_sub(3);

@@ -11,7 +11,6 @@ use std::{
     error::Error,
     fs::File,
     io::{self, IsTerminal, Read, Write},
-    mem::discriminant,
     path::Path,
     process::ExitCode,
 };
@@ -291,38 +290,42 @@ fn table_of(links: &[LinkSummary]) -> String {
     out + &warnings_of(links)
 }
 
-/// The warnings of all links, those of a kind together: the first one, and which other links have such a one, with its number.
+/// The warnings of all links, those of a kind together: of the first link in full, and of others what is their own.
 fn warnings_of(links: &[LinkSummary]) -> String {
-    let mut kinds: Vec<Vec<(&str, &StatementWarning)>> = Vec::new();
-    for link in links {
-        let name = link.name.as_str();
+    let mut kinds: Vec<Vec<(usize, &StatementWarning)>> = Vec::new();
+    for (place, link) in links.iter().enumerate() {
         for warning in &link.warnings {
-            let is_same = |kind: &[(&str, &StatementWarning)]| {
-                discriminant(kind[0].1) == discriminant(warning)
-            };
-            match kinds.iter_mut().find(|kind| is_same(kind)) {
-                Some(names) if names.last().is_some_and(|last| last.0 == name) => {}
-                Some(names) => names.push((name, warning)),
-                None => kinds.push(vec![(name, warning)]),
+            match kinds.iter_mut().find(|kind| kind[0].1.is_like(warning)) {
+                Some(kind) => kind.push((place, warning)),
+                None => kinds.push(vec![(place, warning)]),
             }
         }
     }
     let mut out = String::new();
-    for names in kinds {
-        let (first, warning) = names[0];
-        out += &format!("warning: {first}: {warning}\n");
-        if names.len() > 1 {
-            let told = |(name, warning): &(&str, &StatementWarning)| match warning.figure() {
-                Some(figure) => format!("{name} ({figure})"),
-                None => (*name).to_owned(),
+    for kind in kinds {
+        let mut of_links = kind.chunk_by(|a, b| a.0 == b.0);
+        for (place, warning) in of_links.next().into_iter().flatten() {
+            out += &format!("warning: {}: {warning}\n", links[*place].name);
+        }
+        let others: Vec<String> = of_links
+            .map(|of_link| {
+                let name = links[of_link[0].0].name.as_str();
+                let own: Vec<_> =
+                    of_link.iter().filter_map(|(_, warning)| warning.figure()).collect();
+                if own.is_empty() {
+                    name.to_owned()
+                } else {
+                    format!("{name} ({})", own.join("; "))
+                }
+            })
+            .collect();
+        if !others.is_empty() {
+            let (told, rest) = others.split_at(others.len().min(10));
+            let more = match rest.len() {
+                0 => String::new(),
+                more => format!(" and {more} more"),
             };
-            let some: Vec<String> = names[1..].iter().take(10).map(told).collect();
-            let more = if names.len() > 11 {
-                format!(" and {} more", names.len() - 11)
-            } else {
-                String::new()
-            };
-            out += &format!("         also for {}{more}\n", some.join(", "));
+            out += &format!("         also for {}{more}\n", told.join(", "));
         }
     }
     out

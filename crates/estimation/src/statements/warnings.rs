@@ -1,6 +1,7 @@
 //! What statements contradict, and what they leave open.
 
 use std::fmt;
+use std::mem::discriminant;
 
 use gyradius_inertia::InertiaMatrix;
 
@@ -161,27 +162,41 @@ pub enum MissedBecause {
 }
 
 impl StatementWarning {
-    /// Its number in a few words, where it has one: for a list of bodies that have the same warning.
+    /// What is its own in a few words, where it has that: for a list of entries, axes and bodies that have the like.
     #[must_use]
     pub fn figure(&self) -> Option<String> {
+        let entry = |entry: usize, is: f64, stated: f64| {
+            Some(format!("{}: {} for {}", NAMES[entry], Short(is), Short(stated)))
+        };
         match *self {
             Self::FollowsInPart { share, .. } => Some(format!("by {share:.3}")),
-            Self::Missed { entry, stated, implied, .. } => {
-                Some(format!("{}: {} for {}", NAMES[entry], Short(implied), Short(stated)))
-            }
+            Self::Missed { entry: of, stated, implied, .. } => entry(of, implied, stated),
             Self::Shifted { entry, percent } => Some(format!("{} {percent:+.1} %", NAMES[entry])),
-            Self::Impossible { share, .. } => Some(format!("{:.1} %", 100.0 * share)),
+            Self::Raised { entry, mean } => Some(format!("{}: {}", NAMES[entry], Short(mean))),
+            Self::Alone { entry: of, alone, stated } => entry(of, alone, stated),
+            Self::CentreMissed { entry: of, wanted, implied } => entry(of, implied, wanted),
+            Self::Impossible { axis, share } => Some(format!("K{axis}: {:.1} %", 100.0 * share)),
+            Self::Flat { axis, ratio } => Some(format!("k{axis}: {ratio:.1} deviations")),
+            Self::EqualMoments { axes: [a, b] } => Some(format!("moments {a} and {b}")),
+            Self::Free { axis } => Some(format!("axis {axis}")),
             Self::Correlated
-            | Self::Flat { .. }
-            | Self::Raised { .. }
-            | Self::Alone { .. }
-            | Self::CentreMissed { .. }
             | Self::AxesAndProducts { .. }
-            | Self::EqualMoments { .. }
             | Self::FixedMoments
-            | Self::FixedAxes
-            | Self::Free { .. } => None,
+            | Self::FixedAxes => None,
         }
+    }
+
+    /// Whether another one says the like, of another entry, axis or body: the same words with another [`Self::figure`].
+    #[must_use]
+    pub fn is_like(&self, other: &Self) -> bool {
+        let reason = |warning: &Self| {
+            if let Self::Missed { stated, because, .. } = *warning {
+                Some((discriminant(&because), stated == 0.0))
+            } else {
+                None
+            }
+        };
+        discriminant(self) == discriminant(other) && reason(self) == reason(other)
     }
 }
 

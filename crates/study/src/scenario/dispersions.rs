@@ -14,7 +14,7 @@ use super::{
     follows::Follows,
     joint::{Dispersed, Joint, Target},
     law::GivenLaw,
-    list::List,
+    list::{List, in_words},
     load::{self, GivenLoad, Uncertain},
 };
 use crate::{body::Body, fleet::Fleet};
@@ -116,7 +116,8 @@ impl List {
             let each = self.each(&field, given.drawn)?;
             let law = ScalarLaw::bernoulli(given.probability)
                 .map_err(|e| ScenarioError::field(given.key(&field), e))?;
-            self.push([&format!("{name}_{chance}"); 2], "", 0.0, (law, each), target);
+            let name = format!("{name}_{chance}");
+            self.push([&name, &in_words(&name)], "", 0.0, (law, each), target);
             Ok(())
         };
         if let (Some(_), Some(start)) = (d.late_probability, d.start) {

@@ -42,7 +42,7 @@ impl<T> Dispersed<T> {
 pub(crate) struct Dispersed<T = Target> {
     /// Its name in correlations and in the run table, and of its random stream.
     pub(crate) column: String,
-    /// What it is part of: its parameter, without the component.
+    /// What it is part of, in words: its parameter, without the component.
     pub(crate) part_of: String,
     pub(crate) nominal: f64,
     pub(crate) law: ScalarLaw,

@@ -55,7 +55,7 @@ impl<T> List<T> {
         Self { fleet, all, pairs, fields, bodies: Vec::new() }
     }
 
-    /// A number with a name that ends in its unit, if it has one, and what it is part of.
+    /// A number with a name that ends in its unit, if it has one, and what it is part of, in words.
     pub(crate) fn push(
         &mut self,
         [name, part_of]: [&str; 2],
@@ -125,7 +125,7 @@ impl<T> List<T> {
         let each = self.each(field, law.drawn)?;
         let law = law::about(&law.form, field, nominal, unit)?;
         positive(field, nominal, &law)?;
-        self.push([&place.name; 2], place.unit, nominal, (law, each), target);
+        self.push([&place.name, &in_words(&place.name)], place.unit, nominal, (law, each), target);
         Ok(())
     }
 
@@ -143,7 +143,13 @@ impl<T> List<T> {
             let name = format!("{}_{}", place.name, i + 1);
             let (each, field) = law.drawn(&place.field, i);
             let each = self.each(&field, each)?;
-            self.push([&name, &place.name], place.unit, *nominal, (scalar, each), target(i));
+            self.push(
+                [&name, &in_words(&place.name)],
+                place.unit,
+                *nominal,
+                (scalar, each),
+                target(i),
+            );
         }
         for (a, b, coefficient) in vector.pairs {
             self.pairs.push((first + a, first + b, coefficient));
@@ -164,11 +170,17 @@ impl<T> List<T> {
     ) -> Result<(), ScenarioError> {
         let Some(laws) = laws else { return self.parameter(place, name, uncertain, target) };
         let Uncertain { name: quantity, unit, nominal, law: _ } = uncertain;
-        let part_of = format!("{name}_{quantity}");
+        let parameter = format!("{name}_{quantity}");
         for (i, (law, nominal)) in laws.iter().zip(nominal).enumerate() {
-            let component = format!("{part_of}_{}", i + 1);
-            let name = if laws.len() > 1 { &component } else { &part_of };
-            self.push([name, &part_of], unit, *nominal, (law.clone(), each), target(i));
+            let component = format!("{parameter}_{}", i + 1);
+            let name = if laws.len() > 1 { &component } else { &parameter };
+            self.push(
+                [name, &in_words(&parameter)],
+                unit,
+                *nominal,
+                (law.clone(), each),
+                target(i),
+            );
         }
         Ok(())
     }
@@ -206,10 +218,10 @@ impl<T> List<T> {
         }
         let number = self.bodies.len();
         let roots = body.root_numbers().map(|([quantity, unit], laws)| {
-            let part_of = format!("{name}_{quantity}");
+            let parameter = format!("{name}_{quantity}");
             let root = |(i, law): (usize, &ScalarLaw)| Dispersed {
-                column: format!("{part_of}_{}_{unit}", i + 1),
-                part_of: part_of.clone(),
+                column: format!("{parameter}_{}_{unit}", i + 1),
+                part_of: in_words(&parameter),
                 nominal: law.mean(),
                 law: law.clone(),
                 each,
@@ -318,6 +330,11 @@ fn together(
         of_vehicle.column, of_flight.column
     );
     Err(ScenarioError::field(field, problem))
+}
+
+/// The name of a parameter in words: `payload mass centre`.
+pub(super) fn in_words(parameter: &str) -> String {
+    parameter.replace('_', " ")
 }
 
 /// That a law of what cannot be negative is not so more often than not.
