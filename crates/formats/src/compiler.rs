@@ -37,6 +37,13 @@ pub enum CompilerDoubt {
         /// The first of them, as it is called in the file.
         body: String,
     },
+    /// A body of an MJCF file is attached again by `<attach body="arm"/>`, which names no other file.
+    Attached {
+        /// The first of them, as it is called in the file.
+        body: String,
+    },
+    /// A URDF file turns an inertia by `quat_xyzw`, over which MuJoCo passes.
+    QuaternionOfUrdf,
     /// Bodies of an MJCF file have an `<inertial>` without `pos`, with which MuJoCo loads nothing.
     Unplaced {
         /// The first of them, as it is called in the file.
@@ -68,6 +75,15 @@ impl fmt::Display for CompilerDoubt {
             Self::Replicated { body } => write!(
                 f,
                 "\"{body}\" stands in <replicate>: MuJoCo makes several bodies of it, which all have the same numbers"
+            ),
+            Self::Attached { body } => write!(
+                f,
+                "\"{body}\" is attached once more by <attach>: MuJoCo makes another body of it, with what it holds, which has the \
+                 same numbers"
+            ),
+            Self::QuaternionOfUrdf => f.write_str(
+                "an inertia of the file is turned by quat_xyzw: MuJoCo passes over that and turns nothing, unlike urdfdom and \
+                 Pinocchio. With rpy, all of them read the same body",
             ),
             Self::Unplaced { body } => write!(
                 f,
@@ -101,6 +117,9 @@ pub(crate) fn doubts(tree: &Tree<'_>, format: Format, gaps: &[Gap]) -> Vec<Compi
             let body = replicated.find(|node| node.name() == "body");
             let body = body.map(|body| body.attribute("name").unwrap_or("unnamed"));
             let replicated = body.map(|body| CompilerDoubt::Replicated { body: shortened(body) });
+            let attached = tree.all("attach").filter(|node| node.attribute("model").is_none());
+            let attached = attached.filter_map(|node| node.attribute("body")).take(1);
+            let attached = attached.map(|body| CompilerDoubt::Attached { body: shortened(body) });
             let unplaced = tree.all("inertial").filter(|node| {
                 node.parent().is_some_and(|body| is_body(body, format))
                     && node.attribute("pos").is_none_or(|pos| pos.trim().is_empty())
@@ -111,16 +130,26 @@ pub(crate) fn doubts(tree: &Tree<'_>, format: Format, gaps: &[Gap]) -> Vec<Compi
             });
             let global = said(tree, "coordinate").filter(|(_, told)| *told == "global");
             let framed = framed(tree).map(|told| CompilerDoubt::Framed { told });
-            let all = raised.chain(replicated).chain(unplaced).chain(framed);
+            let all = raised.chain(replicated).chain(attached).chain(unplaced).chain(framed);
             let all = all.chain(global.map(|_| CompilerDoubt::Global));
             all.chain(includes.then_some(CompilerDoubt::Included)).collect()
         }
         Format::Urdf => {
             let of_urdf = overridden(tree).map(|told| CompilerDoubt::OfUrdf { told });
-            of_urdf.into_iter().chain(raised).collect()
+            let turned = tree.all("inertial").flat_map(Node::children);
+            let turned = turned.filter(|node| node.name() == "origin").any(is_turned);
+            let turned = turned.then_some(CompilerDoubt::QuaternionOfUrdf);
+            of_urdf.into_iter().chain(raised).chain(turned).collect()
         }
         Format::Sdf | Format::Csv | Format::Toml | Format::Json => Vec::new(),
     }
+}
+
+/// Whether a `quat_xyzw` says more than no rotation.
+fn is_turned(origin: Node<'_, '_>) -> bool {
+    origin.numbers("quat_xyzw", 4).is_some_and(|numbers| {
+        numbers.is_ok_and(|numbers| numbers[..3].iter().any(|number| number.value != 0.0))
+    })
 }
 
 /// What gives bodies other frames: free joints that are aligned, each by itself or all of them, and static bodies that are

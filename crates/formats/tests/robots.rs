@@ -891,6 +891,27 @@ fn what_mujoco_may_change_is_told() {
             ),
             &[],
         ),
+        (
+            "r.xml",
+            format!(
+                "<mujoco><worldbody><body name='b'>{inertial}</body><frame><attach body='b' prefix='c_'/></frame></worldbody></mujoco>"
+            ),
+            &["\"b\" is attached once more"],
+        ),
+        (
+            "r.urdf",
+            urdf("fusestatic='false'")
+                .replace("name='r'>", "name='r' version='1.1'>")
+                .replace("<inertial>", "<inertial><origin quat_xyzw='0 0 1 1'/>"),
+            &["turned by quat_xyzw: MuJoCo passes over that"],
+        ),
+        (
+            "r.urdf",
+            urdf("fusestatic='false'")
+                .replace("name='r'>", "name='r' version='1.1'>")
+                .replace("<inertial>", "<inertial><origin quat_xyzw='0 0 0 2'/>"),
+            &[],
+        ),
         ("r.xml", mjcf("").replace(" pos='0 0 0'", ""), &["\"b\" has no pos"]),
         ("r.xml", mjcf("").replace("pos='0 0 0'", "pos=' '"), &["\"b\" has no pos"]),
         (
