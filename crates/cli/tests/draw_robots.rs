@@ -341,7 +341,10 @@ fn what_cannot_be_drawn_is_said() {
     );
     fs::write(shell.path("part.sdf"), part).unwrap();
     fs::write(shell.path("empty.sdf"), sdf("")).unwrap();
+    let far = bad.replace("<mass", "<origin xyz='0 0 1e155'/><mass").replace("izz='3'", "izz='2'");
+    fs::write(shell.path("far.urdf"), far).unwrap();
     for (arguments, expected) in [
+        (&["far.urdf", "-n", "1", "--mass", "5%"][..], "\"bad\": mass centre, axis 3 = 1e155 m"),
         (&["a.urdf", "-n", "1"][..], "nothing is stated"),
         (&["a.urdf", "--mass", "5%"], "-n says"),
         (&["a.urdf", "-n", "1", "--mass", "5"], "a number and its unit"),

@@ -145,6 +145,12 @@ impl<'a> RobotDraw<'a> {
                 unreadable.push(format!("\"{name}\": {fault}"));
                 continue;
             }
+            // A place that is none is no matter of the inertia either.
+            let at = numbers.mass_centre_m();
+            if let Err(error) = MassProperties::point(numbers.mass_kg(), at) {
+                unreadable.push(format!("\"{name}\": {error}"));
+                continue;
+            }
             let Some(nominal) = nominal(numbers) else {
                 impossible.push(name);
                 continue;
