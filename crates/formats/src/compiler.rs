@@ -5,6 +5,7 @@ use std::fmt;
 use crate::{
     Format, Gap, GapKind,
     body::shortened,
+    frame::with_quaternions,
     holder::is_body,
     xml::{Node, Tree},
 };
@@ -78,8 +79,8 @@ impl fmt::Display for CompilerDoubt {
             ),
             Self::Attached { body } => write!(
                 f,
-                "\"{body}\" is attached once more by <attach>: MuJoCo makes another body of it, with what it holds, which has the \
-                 same numbers"
+                "\"{body}\" is attached once more by <attach>: MuJoCo makes another body of it and of those in it, with the same \
+                 numbers"
             ),
             Self::QuaternionOfUrdf => f.write_str(
                 "an inertia of the file is turned by quat_xyzw: MuJoCo passes over that and turns nothing, unlike urdfdom and \
@@ -136,20 +137,19 @@ pub(crate) fn doubts(tree: &Tree<'_>, format: Format, gaps: &[Gap]) -> Vec<Compi
         }
         Format::Urdf => {
             let of_urdf = overridden(tree).map(|told| CompilerDoubt::OfUrdf { told });
-            let turned = tree.all("inertial").flat_map(Node::children);
-            let turned = turned.filter(|node| node.name() == "origin").any(is_turned);
-            let turned = turned.then_some(CompilerDoubt::QuaternionOfUrdf);
+            let mut origins = tree.all("inertial").filter_map(|inertial| inertial.child("origin"));
+            let turned = origins.any(is_turned).then_some(CompilerDoubt::QuaternionOfUrdf);
             of_urdf.into_iter().chain(raised).chain(turned).collect()
         }
         Format::Sdf | Format::Csv | Format::Toml | Format::Json => Vec::new(),
     }
 }
 
-/// Whether a `quat_xyzw` says more than no rotation.
+/// Whether a `quat_xyzw` of URDF counts and says more than no rotation.
 fn is_turned(origin: Node<'_, '_>) -> bool {
-    origin.numbers("quat_xyzw", 4).is_some_and(|numbers| {
-        numbers.is_ok_and(|numbers| numbers[..3].iter().any(|number| number.value != 0.0))
-    })
+    let numbers = origin.numbers("quat_xyzw", 4).and_then(Result::ok);
+    let turns = numbers.is_some_and(|numbers| numbers.iter().take(3).any(|n| n.value != 0.0));
+    turns && with_quaternions(origin).is_ok()
 }
 
 /// What gives bodies other frames: free joints that are aligned, each by itself or all of them, and static bodies that are

@@ -148,7 +148,7 @@ fn three(numbers: &[Number]) -> Vector3<f64> {
 }
 
 /// That a URDF file is of version 1.1 or later, which its root says and is 1.0 otherwise: before, readers pass over quaternions.
-fn with_quaternions(node: Node<'_, '_>) -> Result<(), LinkProblem> {
+pub(crate) fn with_quaternions(node: Node<'_, '_>) -> Result<(), LinkProblem> {
     let root = node.ancestors().last();
     let said = root.and_then(|root| root.attribute("version")).unwrap_or("1.0");
     let version = said.split_once('.').and_then(|(major, minor)| {

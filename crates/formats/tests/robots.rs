@@ -912,6 +912,13 @@ fn what_mujoco_may_change_is_told() {
                 .replace("<inertial>", "<inertial><origin quat_xyzw='0 0 0 2'/>"),
             &[],
         ),
+        // No reader takes it in a file that states no version.
+        (
+            "r.urdf",
+            urdf("fusestatic='false'")
+                .replace("<inertial>", "<inertial><origin quat_xyzw='0 0 1 1'/>"),
+            &[],
+        ),
         ("r.xml", mjcf("").replace(" pos='0 0 0'", ""), &["\"b\" has no pos"]),
         ("r.xml", mjcf("").replace("pos='0 0 0'", "pos=' '"), &["\"b\" has no pos"]),
         (

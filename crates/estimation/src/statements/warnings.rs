@@ -165,16 +165,16 @@ impl StatementWarning {
     /// What is its own in a few words, where it has that: for a list of entries, axes and bodies that have the like.
     #[must_use]
     pub fn figure(&self) -> Option<String> {
-        let entry = |entry: usize, is: f64, stated: f64| {
+        let beside = |entry: usize, is: f64, stated: f64| {
             Some(format!("{}: {} for {}", NAMES[entry], Short(is), Short(stated)))
         };
         match *self {
             Self::FollowsInPart { share, .. } => Some(format!("by {share:.3}")),
-            Self::Missed { entry: of, stated, implied, .. } => entry(of, implied, stated),
+            Self::Missed { entry, stated, implied, .. } => beside(entry, implied, stated),
             Self::Shifted { entry, percent } => Some(format!("{} {percent:+.1} %", NAMES[entry])),
             Self::Raised { entry, mean } => Some(format!("{}: {}", NAMES[entry], Short(mean))),
-            Self::Alone { entry: of, alone, stated } => entry(of, alone, stated),
-            Self::CentreMissed { entry: of, wanted, implied } => entry(of, implied, wanted),
+            Self::Alone { entry, alone, stated } => beside(entry, alone, stated),
+            Self::CentreMissed { entry, wanted, implied } => beside(entry, implied, wanted),
             Self::Impossible { axis, share } => Some(format!("K{axis}: {:.1} %", 100.0 * share)),
             Self::Flat { axis, ratio } => Some(format!("k{axis}: {ratio:.1} deviations")),
             Self::EqualMoments { axes: [a, b] } => Some(format!("moments {a} and {b}")),
@@ -191,7 +191,9 @@ impl StatementWarning {
     pub fn is_like(&self, other: &Self) -> bool {
         let reason = |warning: &Self| {
             if let Self::Missed { stated, because, .. } = *warning {
-                Some((discriminant(&because), stated == 0.0))
+                // This one has words of its own.
+                let unstated = stated == 0.0 && because == MissedBecause::Tied;
+                Some((discriminant(&because), unstated))
             } else {
                 None
             }

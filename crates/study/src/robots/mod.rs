@@ -9,8 +9,7 @@ mod table;
 use gyradius_campaign::{CampaignError, FormatError, Streams, TableError};
 use gyradius_estimation::{StatedBody, StatementError, Statements};
 use gyradius_formats::{
-    Format, GapKind, LinkNumbers, LinkProblem, RobotError, RobotFile, RobotLink, TOLERANCE,
-    WriteError, judge,
+    Format, GapKind, LinkProblem, RobotError, RobotFile, RobotLink, TOLERANCE, WriteError, judge,
 };
 use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties, Region, Repair, RepairMethod};
 use nalgebra::Matrix3;
@@ -145,15 +144,17 @@ impl<'a> RobotDraw<'a> {
                 unreadable.push(format!("\"{name}\": {fault}"));
                 continue;
             }
-            // A place that is none is no matter of the inertia either.
-            let at = numbers.mass_centre_m();
-            if let Err(error) = MassProperties::point(numbers.mass_kg(), at) {
-                unreadable.push(format!("\"{name}\": {error}"));
-                continue;
-            }
-            let Some(nominal) = nominal(numbers) else {
+            let Some(inertia) = as_written(numbers.inertia()) else {
                 impossible.push(name);
                 continue;
+            };
+            let at = numbers.mass_centre_m();
+            let nominal = match MassProperties::new(numbers.mass_kg(), at, inertia) {
+                Ok(nominal) => nominal,
+                Err(error) => {
+                    unreadable.push(format!("\"{name}\": {error}"));
+                    continue;
+                }
             };
             let law = match StatedBody::new(&options.statements, &nominal) {
                 Ok(law) => law,
@@ -267,11 +268,6 @@ pub fn inset(drawn: MassProperties) -> MassProperties {
         MassProperties::new(drawn.mass_kg(), drawn.mass_centre_m(), inertia).ok()
     });
     moved.unwrap_or(drawn)
-}
-
-fn nominal(numbers: &LinkNumbers) -> Option<MassProperties> {
-    let inertia = as_written(numbers.inertia())?;
-    MassProperties::new(numbers.mass_kg(), numbers.mass_centre_m(), inertia).ok()
 }
 
 /// The inertia that a file means by these numbers: themselves, or the nearest that a body can have where rounding to six digits has

@@ -14,7 +14,7 @@ use super::{
     follows::Follows,
     joint::{Dispersed, Joint, Target},
     law::GivenLaw,
-    list::{List, in_words},
+    list::List,
     load::{self, GivenLoad, Uncertain},
 };
 use crate::{body::Body, fleet::Fleet};
@@ -116,8 +116,7 @@ impl List {
             let each = self.each(&field, given.drawn)?;
             let law = ScalarLaw::bernoulli(given.probability)
                 .map_err(|e| ScenarioError::field(given.key(&field), e))?;
-            let name = format!("{name}_{chance}");
-            self.push([&name, &in_words(&name)], "", 0.0, (law, each), target);
+            self.push([&format!("{name}_{chance}"); 2], "", 0.0, (law, each), target);
             Ok(())
         };
         if let (Some(_), Some(start)) = (d.late_probability, d.start) {

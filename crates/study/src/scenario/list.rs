@@ -55,17 +55,29 @@ impl<T> List<T> {
         Self { fleet, all, pairs, fields, bodies: Vec::new() }
     }
 
-    /// A number with a name that ends in its unit, if it has one, and what it is part of, in words.
+    /// A number that a user gave a name.
+    pub(crate) fn named(
+        &mut self,
+        name: &str,
+        nominal: f64,
+        (law, each): (ScalarLaw, Each),
+        target: T,
+    ) {
+        let [column, part_of] = [name; 2].map(str::to_owned);
+        self.all.push(Dispersed { column, part_of, nominal, law, each, target });
+    }
+
+    /// A number with a name that ends in its unit, if it has one, and the parameter that it is part of.
     pub(crate) fn push(
         &mut self,
-        [name, part_of]: [&str; 2],
+        [name, parameter]: [&str; 2],
         unit: &str,
         nominal: f64,
         (law, each): (ScalarLaw, Each),
         target: T,
     ) {
         let column = if unit.is_empty() { name.to_owned() } else { format!("{name}_{unit}") };
-        let part_of = part_of.to_owned();
+        let part_of = in_words(parameter);
         self.all.push(Dispersed { column, part_of, nominal, law, each, target });
     }
 
@@ -125,7 +137,7 @@ impl<T> List<T> {
         let each = self.each(field, law.drawn)?;
         let law = law::about(&law.form, field, nominal, unit)?;
         positive(field, nominal, &law)?;
-        self.push([&place.name, &in_words(&place.name)], place.unit, nominal, (law, each), target);
+        self.push([&place.name; 2], place.unit, nominal, (law, each), target);
         Ok(())
     }
 
@@ -143,13 +155,7 @@ impl<T> List<T> {
             let name = format!("{}_{}", place.name, i + 1);
             let (each, field) = law.drawn(&place.field, i);
             let each = self.each(&field, each)?;
-            self.push(
-                [&name, &in_words(&place.name)],
-                place.unit,
-                *nominal,
-                (scalar, each),
-                target(i),
-            );
+            self.push([&name, &place.name], place.unit, *nominal, (scalar, each), target(i));
         }
         for (a, b, coefficient) in vector.pairs {
             self.pairs.push((first + a, first + b, coefficient));
@@ -174,13 +180,7 @@ impl<T> List<T> {
         for (i, (law, nominal)) in laws.iter().zip(nominal).enumerate() {
             let component = format!("{parameter}_{}", i + 1);
             let name = if laws.len() > 1 { &component } else { &parameter };
-            self.push(
-                [name, &in_words(&parameter)],
-                unit,
-                *nominal,
-                (law.clone(), each),
-                target(i),
-            );
+            self.push([name, &parameter], unit, *nominal, (law.clone(), each), target(i));
         }
         Ok(())
     }
@@ -333,7 +333,7 @@ fn together(
 }
 
 /// The name of a parameter in words: `payload mass centre`.
-pub(super) fn in_words(parameter: &str) -> String {
+fn in_words(parameter: &str) -> String {
     parameter.replace('_', " ")
 }
 
