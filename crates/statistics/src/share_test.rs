@@ -172,31 +172,35 @@ impl Stratum {
     }
 
     /// The probabilities of a statistic of 0, 1… steps, the last of that or more.
-    fn distribution(&self, steps: &dyn Fn(f64) -> usize, last: usize) -> Vec<f64> {
+    fn distribution(&self, steps: &dyn Fn(f64) -> usize, last: usize) -> Masses {
         // By failures dealt so far, from the first number on.
         let mut first = 0;
-        let mut dealt = vec![vec![0.0; last + 1]];
-        dealt[0][0] = 1.0;
+        let mut dealt = vec![Masses::certain(last)];
         for (cell, numbers) in &self.dealt {
-            let mut next = vec![vec![0.0; last + 1]; dealt.len() + numbers.weights.len() - 1];
-            for (i, (failures, weight)) in numbers.all().enumerate() {
-                let term = steps(self.all.term(Cell { runs: cell.runs, failures })).min(last);
-                for (to, of) in next[i..].iter_mut().zip(&dealt) {
-                    add_shifted(to, of, term, weight);
+            let term = |failures| steps(self.all.term(Cell { runs: cell.runs, failures }));
+            let ways: Vec<(usize, f64)> =
+                numbers.all().map(|(failures, weight)| (term(failures), weight)).collect();
+            let all = |number: usize| {
+                let mut all = Masses::none(last);
+                let least = (number + 1).saturating_sub(dealt.len());
+                for (i, (term, weight)) in ways.iter().enumerate().take(number + 1).skip(least) {
+                    all.add_shifted(&dealt[number - i], *term, *weight);
                 }
-            }
+                all
+            };
+            let next = (0..dealt.len() + ways.len() - 1).map(all).collect();
             first += numbers.first;
             dealt = next;
         }
-        let mut found = vec![0.0; last + 1];
+        let mut found = Masses::none(last);
         let runs = Cell::sum(&self.large).runs;
         for (before, weight) in self.numbers_beside(first..=first + dealt.len() as u64 - 1).all() {
             let failures = self.all.failures - before;
-            let term = steps(self.all.term(Cell { runs, failures })).min(last);
-            add_shifted(&mut found, &dealt[(before - first) as usize], term, weight);
+            let term = steps(self.all.term(Cell { runs, failures }));
+            found.add_shifted(&dealt[(before - first) as usize], term, weight);
         }
-        let total: f64 = found.iter().sum();
-        found.iter_mut().for_each(|mass| *mass /= total);
+        let total: f64 = found.masses.iter().sum();
+        found.masses.iter_mut().for_each(|mass| *mass /= total);
         found
     }
 }
@@ -244,13 +248,12 @@ fn p_value(strata: &[Stratum], freedom: usize) -> f64 {
     let found: usize = strata.iter().flat_map(Stratum::terms).map(steps).sum();
     // With so many steps the cells to which failures are dealt need nothing of the large ones.
     let last = found + libm::ceil(large * scale) as usize;
-    let mut all = vec![0.0; last + 1];
-    all[0] = 1.0;
+    let mut all = Masses::certain(last);
     for stratum in strata {
         let own = stratum.distribution(&steps, last);
-        let mut next = vec![0.0; last + 1];
-        for (at, mass) in own.iter().enumerate().filter(|(_, mass)| **mass > 0.0) {
-            add_shifted(&mut next, &all, at, *mass);
+        let mut next = Masses::none(last);
+        for (at, mass) in own.masses.iter().enumerate().filter(|(_, mass)| **mass > 0.0) {
+            next.add_shifted(&all, at, *mass);
         }
         all = next;
     }
@@ -262,14 +265,42 @@ fn p_value(strata: &[Stratum], freedom: usize) -> f64 {
     };
     let beyond =
         |(at, mass): (usize, &f64)| mass * tail(large + (found as f64 - at as f64) / scale);
-    all.iter().enumerate().map(beyond).sum::<f64>().clamp(NEGLIGIBLE, 1.0)
+    all.masses.iter().enumerate().map(beyond).sum::<f64>().clamp(NEGLIGIBLE, 1.0)
 }
 
-/// Adds probabilities times a weight so many places further on; what would stand beyond the last place stands there.
-fn add_shifted(to: &mut [f64], of: &[f64], places: usize, weight: f64) {
-    let inside = of.len() - 1 - places;
-    to[places..].iter_mut().zip(&of[..inside]).for_each(|(to, of)| *to += of * weight);
-    to[of.len() - 1] += of[inside..].iter().sum::<f64>() * weight;
+/// The probabilities of 0, 1… steps, of which the last place is for that or more.
+struct Masses {
+    masses: Vec<f64>,
+    /// Outside of these places there is nothing but in the last place: until several cells are dealt to, most are empty.
+    filled: std::ops::Range<usize>,
+}
+
+impl Masses {
+    fn none(last: usize) -> Self {
+        Self { masses: vec![0.0; last + 1], filled: last..0 }
+    }
+
+    /// All in the first place.
+    fn certain(last: usize) -> Self {
+        let mut masses = Self::none(last);
+        masses.masses[0] = 1.0;
+        masses.filled = 0..1.min(last);
+        masses
+    }
+
+    /// Adds others times a weight so many places further on; what would stand beyond the last place stands there.
+    fn add_shifted(&mut self, of: &Self, places: usize, weight: f64) {
+        let last = self.masses.len() - 1;
+        let inside = of.filled.start..of.filled.end.min(last.saturating_sub(places));
+        if inside.start < inside.end {
+            let to = inside.start + places..inside.end + places;
+            let pairs = self.masses[to.clone()].iter_mut().zip(&of.masses[inside.clone()]);
+            pairs.for_each(|(to, of)| *to += of * weight);
+            self.filled = self.filled.start.min(to.start)..self.filled.end.max(to.end);
+        }
+        let beyond = inside.end.max(inside.start).min(of.filled.end)..of.filled.end;
+        self.masses[last] += (of.masses[beyond].iter().sum::<f64>() + of.masses[last]) * weight;
+    }
 }
 
 /// The p-values of many tests, adjusted so that each may be held against a risk for all together (Holm 1979, Scand. J.
