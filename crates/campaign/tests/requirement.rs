@@ -425,7 +425,7 @@ fn what_is_wrong_with_a_table_is_said() {
         ("y\n1\n", "no column \"x\"; its columns are y"),
         ("x,x\n1,2\n", "two columns are called \"x\""),
         ("x\n1\nabout 2\n", "line 3, column \"x\": \"about 2\" is not a number"),
-        ("x,y\n1,2\n3\n", "found record with 1 fields"),
+        ("x,y\n1,2\n3\n", "line 3: the row has 1 values: there must be 2"),
         ("PAR1", "Parquet"),
         ("PAR1 and so on, which is no Parquet", "Parquet"),
         ("x\n", "no rows"),

@@ -221,6 +221,21 @@ fn what_is_no_estimate_is_refused() {
         ("d.csv", "1,2,3\n".to_owned(), "ten numbers"),
         ("e.txt", String::new(), "extension"),
         ("f.toml", "mean = 3\n".to_owned(), "f.toml"),
+        (
+            "h.json",
+            format!(r#"{{"mean": [1.0, 2.0], "deviations": {DEVIATIONS:?}}}"#),
+            "mean has a length of 2: it must be 10",
+        ),
+        (
+            "i.json",
+            format!(r#"{{"mean": {MEAN:?}, "covariance": [[1.0]]}}"#),
+            "row 1 of covariance has a length of 1: it must be 10",
+        ),
+        (
+            "j.json",
+            format!(r#"{{"mean": {MEAN:?}, "covariance": []}}"#),
+            "covariance has a length of 0: it must be 10",
+        ),
     ] {
         fs::write(folder.path().join(name), text).unwrap();
         let (code, out, message) = run(&folder, &["fit", "--estimate", name]);

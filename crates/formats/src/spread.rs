@@ -4,7 +4,7 @@ use crate::units::squeezed;
 
 /// What is written of standard deviations, wherever it stands, and in words of their own.
 const MARKS: [&str; 5] = ["sigma", "percent", "%", "σ", "±"];
-const WORDS: [&str; 18] = [
+const WORDS: [&str; 25] = [
     "sd",
     "std",
     "stdev",
@@ -23,6 +23,13 @@ const WORDS: [&str; 18] = [
     "pct",
     "err",
     "error",
+    "accuracy",
+    "precision",
+    "dispersion",
+    "spread",
+    "rms",
+    "se",
+    "sem",
 ];
 
 /// Whether a heading has a mark of uncertainty.
@@ -39,7 +46,29 @@ pub(crate) fn has_typed_mark(heading: &str) -> bool {
 
 /// Whether it has a word for it.
 pub(crate) fn has_word(heading: &str) -> bool {
-    words(&heading.to_lowercase()).any(|word| WORDS.contains(&word))
+    words(&parted(heading)).any(|word| WORDS.contains(&word))
+}
+
+/// In small letters, with a blank before each capital after a small letter, where a word begins: `massSD` becomes `mass sd`.
+pub(crate) fn parted(heading: &str) -> String {
+    let mut parted = String::with_capacity(heading.len() + 8);
+    let mut was_small = false;
+    for c in heading.chars() {
+        if was_small && c.is_uppercase() {
+            parted.push(' ');
+        }
+        was_small = c.is_lowercase();
+        parted.extend(c.to_lowercase());
+    }
+    parted
+}
+
+/// What stands before or after a word for it in one word, in small letters: `mass` of `masssd` and of `sdmass`.
+pub(crate) fn beside_word(word: &str) -> impl Iterator<Item = &str> {
+    WORDS
+        .iter()
+        .flat_map(move |known| [word.strip_prefix(known), word.strip_suffix(known)])
+        .flatten()
 }
 
 /// Whether it speaks of nothing else, so that nobody knows of which number: `uncertainty`, `tolerance [kg]`.

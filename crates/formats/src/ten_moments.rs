@@ -30,11 +30,11 @@ pub struct TenMomentsFile {
 struct Fields {
     #[serde(default)]
     parameters: Option<String>,
-    mean: [f64; 10],
+    mean: Vec<f64>,
     #[serde(default)]
-    covariance: Option<[[f64; 10]; 10]>,
+    covariance: Option<Vec<Vec<f64>>>,
     #[serde(default)]
-    deviations: Option<[f64; 10]>,
+    deviations: Option<Vec<f64>>,
 }
 
 impl TenMomentsFile {
@@ -56,8 +56,13 @@ impl TenMomentsFile {
             other => return Err(TenMomentsError::Extension { extension: other.to_owned() }),
         };
         let covariance = match (fields.covariance, fields.deviations) {
-            (Some(covariance), None) => covariance,
+            (Some(covariance), None) => {
+                let rows = covariance.into_iter().enumerate();
+                let rows = rows.map(|(i, row)| ten(&format!("row {} of covariance", i + 1), row));
+                ten("covariance", rows.collect::<Result<_, _>>()?)?
+            }
             (None, Some(deviations)) => {
+                let deviations: [f64; 10] = ten("deviations", deviations)?;
                 if let Some(i) = deviations.iter().position(|d| *d < 0.0) {
                     let (n, value) = (i + 1, deviations[i]);
                     let message = format!("deviation {n} = {value:?}: it must be zero or more");
@@ -73,7 +78,7 @@ impl TenMomentsFile {
                 return Err(malformed("there must be either covariance or deviations"));
             }
         };
-        Ok(Self { parameters: fields.parameters, mean: fields.mean, covariance })
+        Ok(Self { parameters: fields.parameters, mean: ten("mean", fields.mean)?, covariance })
     }
 
     fn from_csv(text: &str) -> Result<Self, TenMomentsError> {
@@ -169,6 +174,13 @@ impl Columns {
         let place = |i: usize| (places[i], columns.unit(i));
         Ok(Self { places: std::array::from_fn(place), centre: columns.centre() })
     }
+}
+
+/// Ten of something, which messages call so.
+fn ten<T>(field: &str, found: Vec<T>) -> Result<[T; 10], TenMomentsError> {
+    <[T; 10]>::try_from(found).map_err(|found| {
+        malformed(&format!("{field} has a length of {}: it must be 10", found.len()))
+    })
 }
 
 fn malformed(message: &str) -> TenMomentsError {

@@ -42,6 +42,7 @@ impl Unit {
 
     /// The unit in a text that holds nothing else.
     pub(crate) fn of(text: &str, dimension: Dimension) -> Result<Self, UnitProblem> {
+        let is_inch_mark = text.contains('"');
         let text = text.trim_matches(|c| is_between(c) || MARKS.contains(&c));
         let plain = plain(text);
         let mut readings = dimension.readings(&plain);
@@ -49,7 +50,9 @@ impl Unit {
             readings = dimension.readings(plain.strip_prefix("in ").unwrap_or_default());
         }
         match readings.as_slice() {
-            _ if plain.is_empty() => Ok(Self::none()),
+            _ if plain.is_empty() && !is_inch_mark => Ok(Self::none()),
+            // Capitals do not tell a megagram from a milligram.
+            _ if text.contains("MG") => Err(UnitProblem::Unknown { allowed: dimension.known() }),
             [] => Err(UnitProblem::Unknown { allowed: dimension.known() }),
             [(_, si)] => Ok(Self { text: text.to_owned(), si: *si }),
             [(first, _), (second, _), ..] => {
@@ -147,7 +150,9 @@ pub(crate) fn longest_name<T>(
     let mut parts = ends.map(|at| heading.split_at(at));
     parts.find_map(|(name, rest)| {
         let found = name.ends_with(char::is_alphanumeric).then(|| known(&squeezed(name)))??;
-        Some((found, Tail(rest)))
+        // What ends a quotation is no mark of an inch.
+        let is_quoted = name.matches('"').count() % 2 == 1;
+        Some((found, Tail(rest.strip_prefix('"').filter(|_| is_quoted).unwrap_or(rest))))
     })
 }
 
@@ -171,7 +176,13 @@ impl<'a> Tail<'a> {
             let rest = self.0.trim_start_matches(|c| is_between(c) && !MARKS.contains(&c));
             let is_certain =
                 rest.starts_with(MARKS) || matches!(problem, UnitProblem::Ambiguous { .. });
-            let text = self.0.trim_matches(|c| is_between(c) || MARKS.contains(&c)).to_owned();
+            let mut text = self.0.trim_matches(|c| is_between(c) || MARKS.contains(&c));
+            // Only the mark of an inch is nothing but marks.
+            let is_certain = is_certain || text.is_empty();
+            if text.is_empty() {
+                text = "\"";
+            }
+            let text = text.to_owned();
             (is_certain || self.is_apart()).then_some(BadUnit { text, problem, is_certain })
         };
         match Unit::of(self.0, dimension) {

@@ -55,8 +55,8 @@ fn each_inertia_unit(mut call: impl FnMut(&str, (&str, &str), f64, Option<[&str;
 }
 
 fn upper(text: &str) -> String {
-    // Mg is not MG.
-    if text.contains("Mg") { text.to_owned() } else { text.to_uppercase() }
+    // MG, which may be Mg or mg, is refused.
+    if text.to_lowercase().contains("mg") { text.to_owned() } else { text.to_uppercase() }
 }
 
 /// `lbm m^2` was read as lb·mm², a millionth of it.
@@ -79,6 +79,11 @@ fn every_unit_of_inertia_is_read_as_it_is_written_in_tables_that_are_checked() {
                 }
                 (found, _) => panic!("{table}{found:?}"),
             }
+        }
+        let large = beside(&unit.to_uppercase());
+        if large.contains("MG") {
+            let error = checked(large.as_bytes()).unwrap_err().to_string();
+            assert!(error.contains("ixx is in") && error.contains("MG"), "{large}{error}");
         }
     });
 }

@@ -62,7 +62,19 @@ pub(super) fn reader<'a>(
 }
 
 pub(super) fn broken(path: &Path, error: &csv::Error) -> ForeignError {
-    ForeignError { path: path.to_owned(), problem: error.to_string() }
+    let line = |at: &Option<csv::Position>| {
+        at.as_ref().map_or_else(String::new, |at| format!("line {}: ", at.line()))
+    };
+    let problem = match error.kind() {
+        csv::ErrorKind::Utf8 { pos, .. } => {
+            format!("{}it is not UTF-8: save the table as UTF-8", line(pos))
+        }
+        csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {
+            format!("{}the row has {len} values: there must be {expected_len}", line(pos))
+        }
+        _ => error.to_string(),
+    };
+    ForeignError { path: path.to_owned(), problem }
 }
 
 pub(super) fn scan_csv(

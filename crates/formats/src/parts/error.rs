@@ -147,6 +147,9 @@ pub enum PartsProblem {
         /// Its name.
         column: &'static str,
     },
+    /// A header alone.
+    #[error("no row stands below the header: each part must have one")]
+    NoRows,
     /// Two columns for one thing.
     #[error("columns {first:?} and {second:?} say the same: there must be one of them")]
     Columns {

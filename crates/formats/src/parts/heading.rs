@@ -245,13 +245,16 @@ impl Heading {
     }
 }
 
-/// Whether a heading speaks of how uncertain one of the ten numbers is, as `mass_std`, `I_xx sd` and `dmass`.
+/// Whether a heading speaks of how uncertain one of the ten numbers is, as `mass_std`, `I_xx sd`, `massSD` and `dmass`.
 pub(crate) fn is_spread(text: &str) -> bool {
-    let text = text.to_lowercase();
-    let words: Vec<&str> = spread::words(&text).collect();
+    let (small, parted) = (text.to_lowercase(), spread::parted(text));
+    let words: Vec<&str> = spread::words(&parted).collect();
     let is_number = |words: &[&str]| group(&words.concat()).is_some();
     let names_number = words.chunks(1).any(is_number) || words.windows(2).any(is_number);
-    (spread::has_word(&text) && names_number) || is_difference(&text)
+    // A letter beside it is no number: `varx` may be anything.
+    let is_name = |name: &str| name.len() > 1 && group(name).is_some();
+    let is_one_word = || spread::words(&small).flat_map(spread::beside_word).any(is_name);
+    (spread::has_word(text) && names_number) || is_one_word() || is_difference(&small)
 }
 
 /// Whether it is, in small letters, the name of one of the ten after what stands for a difference or an uncertainty:
@@ -431,6 +434,13 @@ mod tests {
             ("-sigma_Ixy", Heading::Signed),
             ("Ixx uncertainty [kg m2]", Heading::NoDeviation),
             ("uncertainty", Heading::NoDeviation),
+            ("MassSD", Heading::NoDeviation),
+            ("IxxError [kg m2]", Heading::NoDeviation),
+            ("SDmass", Heading::NoDeviation),
+            ("massTol", Heading::NoDeviation),
+            ("mass_precision", Heading::NoDeviation),
+            ("se_mass", Heading::NoDeviation),
+            ("varx", Heading::Other),
             ("Tolerance [kg]", Heading::NoDeviation),
             ("tolerance class", Heading::Other),
             ("kx_mm", Heading::Column(Column::Gyration(0, Some(1e-3)))),

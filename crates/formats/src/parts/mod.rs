@@ -199,6 +199,9 @@ impl PartsTable {
                 Cells { columns: &columns, headings: &headings, cells: &cells, products }.row(line);
             found.push(row.map_err(|error| error.beside(&passed_over))?);
         }
+        if found.is_empty() {
+            return Err(PartsError::new(line, None, PartsProblem::NoRows));
+        }
         if let Some(row) = totals::named(&found) {
             let (_, line) = row.place();
             return Err(PartsError::new(line, Some(row.name()), PartsProblem::Summary));

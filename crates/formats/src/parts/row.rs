@@ -256,7 +256,11 @@ impl Cells<'_> {
         }
         let shape: Result<Shape, _> = serde_json::from_value(Value::Object(table));
         shape.map(|shape| Some(Some(shape))).map_err(|error| {
-            let message = error.to_string();
+            // A point is none of the shapes, which have a volume or a surface.
+            let mut message = error.to_string();
+            if message.starts_with("unknown variant") {
+                message = message.replacen("expected one of ", "expected one of `point`, ", 1);
+            }
             PartsProblem::Shape { message }
         })
     }

@@ -148,6 +148,16 @@ fn what_a_row_lacks_is_named() {
         ),
         ("name,mass,cx,cy,cz\na,1,0,0,0\n", "line 2: a: there is no inertia"),
         ("name,mass,cx,cy,cz\na,1,0,0\n", "line 2: the row has 4 values: there must be 5"),
+        ("name,mass,cx,cy,cz\n", "line 1: no row stands below the header"),
+        (
+            "name,mass (lb),\"cx (\"\")\",cy,cz\na,1,0,0,0\n",
+            r#"line 1: column "cx (\")": centre_x is in "\"": it must be in m"#,
+        ),
+        (
+            "name,mass (lb),cx,cy,cz\n,lb,\"\"\"\",m,m\na,1,0,0,0\n",
+            r#"line 1: column "cx [\"]": centre_x is in "\"": it must be in m"#,
+        ),
+        ("name,MASS [MG],cx,cy,cz\na,1,0,0,0\n", r#"line 1: column "MASS [MG]": mass is in "MG""#),
         ("name,mass,cx,cy,cz\n\na,one,0,0,0\n", "line 3: a: mass = \"one\" is not a number"),
         ("name,mass,cx,cy,cz\na,inf,0,0,0\n", "line 2: a: mass = \"inf\": it must be finite"),
         ("name,mass,cx,cy,cz,ixx,iyy\na,1,0,0,0,1,1\n", "line 2: a: izz is missing"),
@@ -157,7 +167,7 @@ fn what_a_row_lacks_is_named() {
         ),
         (
             "name,mass,cx,cy,cz,shape\na,1,0,0,0,potato\n",
-            "line 2: a: shape: unknown variant `potato`",
+            "line 2: a: shape: unknown variant `potato`, expected one of `point`, `box`",
         ),
         (
             "name,mass,cx,cy,cz,shape,radius_m\na,1,0,0,0,sphere,-1\n",
