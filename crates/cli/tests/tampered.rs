@@ -94,3 +94,40 @@ fn runs_that_are_not_kept_do_not_stay() {
         assert_eq!(files(&scratch.path("it")) == whole, are_its_own, "{scenario}");
     }
 }
+
+/// A folder of the program's own that was moved away, with a link in its place.
+#[cfg(unix)]
+#[test]
+fn nothing_is_written_through_links_in_the_folder() {
+    let scratch = scratch();
+    let study = ["study", "s.toml", "--runs", "600", "-q", "--out", "it"];
+    let shard = |shard: &'static str| [&study[..], &["--shard", shard]].concat();
+    let [blocks, elsewhere] = ["it/.gyradius/campaign/all", "elsewhere"].map(|at| scratch.path(at));
+    scratch.done(&shard("1/2"), 0);
+    fs::rename(&blocks, &elsewhere).unwrap();
+    std::os::unix::fs::symlink(&elsewhere, &blocks).unwrap();
+    let own = elsewhere.join("000000256-000000511.parquet");
+    fs::write(&own, "my own").unwrap();
+    let before = files(&elsewhere);
+    for again in [shard("2/2"), study.to_vec()] {
+        let said = scratch.done(&again, 2);
+        assert!(said.contains(".gyradius/campaign/all in it is a link"), "{said}");
+        assert!(files(&elsewhere) == before);
+    }
+
+    // Damaged blocks are not put elsewhere either.
+    fs::remove_file(&own).unwrap();
+    fs::remove_file(&blocks).unwrap();
+    fs::rename(&elsewhere, &blocks).unwrap();
+    fs::create_dir(&elsewhere).unwrap();
+    let damaged = scratch.path("it/.gyradius/damaged");
+    std::os::unix::fs::symlink(&elsewhere, &damaged).unwrap();
+    let block = files(&blocks).into_keys().next().unwrap();
+    fs::write(blocks.join(&block), "cut").unwrap();
+    let said = scratch.done(&study, 2);
+    assert!(said.contains(".gyradius/damaged in it is a link"), "{said}");
+    assert_eq!(fs::read(blocks.join(&block)).unwrap(), b"cut");
+    fs::remove_file(&damaged).unwrap();
+    scratch.done(&study, 0);
+    assert!(files(&elsewhere).is_empty());
+}

@@ -54,7 +54,7 @@ impl Area {
     }
 
     /// What it is called from the folder on.
-    fn name(&self) -> String {
+    pub(super) fn name(&self) -> String {
         let name = self.0.file_name().unwrap_or_default().to_string_lossy();
         format!("{HIDDEN}/{name}")
     }

@@ -21,9 +21,9 @@ use super::{
     Folder, FolderError, Problem,
     area::{Area, line},
     disk,
-    hidden::Hidden,
+    hidden::{Hidden, be_folder},
     manifest::Block,
-    name::{Found, Name, look},
+    name::{Found, HIDDEN, Name, look, said},
     shared::Shared,
     told::{missing_runs, published},
     unobstructed,
@@ -193,6 +193,21 @@ impl Blocks {
         aside: &Path,
         threads: &rayon::ThreadPool,
     ) -> Result<(), Problem> {
+        // What stands behind a link is not the program's to put aside.
+        let folder = |block: &Block| self.path(block).parent().map(Path::to_owned);
+        for folder in blocks.iter().filter_map(folder).collect::<BTreeSet<_>>() {
+            let name = folder.strip_prefix(&self.place).unwrap_or(&folder).display().to_string();
+            match fs::symlink_metadata(&folder) {
+                Ok(found) if !found.is_dir() => {
+                    return Err(Problem::Kind {
+                        name,
+                        is: said(found.file_type()),
+                        should: "folder",
+                    });
+                }
+                Ok(_) | Err(_) => {}
+            }
+        }
         let states: Vec<io::Result<Option<String>>> =
             threads.install(|| blocks.par_iter().map(|block| self.fault(block)).collect());
         let states = states.into_iter().collect::<io::Result<Vec<_>>>()?;
@@ -373,10 +388,7 @@ impl Blocks {
         let before = self.locked().blocks.iter().filter(|b| same(b)).map(|b| b.again).sum::<u64>();
         block.again = before + again;
         let folder = self.area.path().join(&block.model);
-        match disk::create_folder(&folder) {
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
-            other => other?,
-        }
+        be_folder(&folder, || format!("{}/{}", self.area.name(), block.model))?;
         let path = self.path(&block);
         let name = self.shard.map_or_else(|| "part".to_owned(), |s| format!("{}.part", s.name()));
         let part = path.with_extension(name);
@@ -467,13 +479,11 @@ fn reach(ends: &Ends<'_>, model: &str, run: u64) -> u64 {
 }
 
 /// Moves a block that is not as it was written out of the way.
-fn put_aside(path: &Path, damaged: &Path, block: &Block) -> io::Result<()> {
-    if !damaged.is_dir() {
-        disk::create_folder(damaged)?;
-    }
+fn put_aside(path: &Path, damaged: &Path, block: &Block) -> Result<(), Problem> {
+    be_folder(damaged, || format!("{HIDDEN}/{DAMAGED}"))?;
     let name = |i: u32| damaged.join(format!("{}-{}.{i}", block.model, block.file()));
     let free = (1..).map(name).find(|name| fs::symlink_metadata(name).is_err());
-    free.map_or(Ok(()), |free| disk::move_file(path, &free))
+    Ok(free.map_or(Ok(()), |free| disk::move_file(path, &free))?)
 }
 
 /// Counts and hashes what is written.

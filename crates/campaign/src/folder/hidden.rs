@@ -186,3 +186,19 @@ fn is_at(file: &File, path: &Path) -> io::Result<bool> {
 fn is_at(_file: &File, path: &Path) -> io::Result<bool> {
     path.try_exists()
 }
+
+/// Makes a folder, unless one is there. A link to one is none: nothing is written through it.
+pub(super) fn be_folder(path: &Path, name: impl FnOnce() -> String) -> Result<(), Problem> {
+    if disk::is_free(path) {
+        match disk::create_folder(path) {
+            // Another shard has made it.
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            made => return Ok(made?),
+        }
+    }
+    let kind = fs::symlink_metadata(path)?.file_type();
+    if kind.is_dir() {
+        return Ok(());
+    }
+    Err(Problem::Kind { name: name(), is: said(kind), should: "folder" })
+}

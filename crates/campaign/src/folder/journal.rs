@@ -15,7 +15,7 @@ use std::{
 
 use super::{
     Problem, disk,
-    hidden::Hidden,
+    hidden::{Hidden, be_folder},
     name::{Found, HIDDEN, Name, look, said},
     record::Record,
 };
@@ -306,7 +306,7 @@ fn read(place: &Path) -> Result<Option<Vec<Line>>, Problem> {
 /// Puts old files aside and new ones in place. May be done again after it was broken off.
 fn forward(hidden: &Hidden, replacement: &Replacement) -> Result<(), Problem> {
     let (place, draft, aside) = (hidden.place(), hidden.join(DRAFT), hidden.join(ASIDE));
-    make_folder(&aside)?;
+    be_folder(&aside, || format!("{HIDDEN}/{ASIDE}"))?;
     for name in replacement.old() {
         let installed = replacement.new.has(name) && !is_there(&name.below(&draft))?;
         if installed || is_there(&name.below(&aside))? {
@@ -411,12 +411,8 @@ fn remove_folders(
     Ok(())
 }
 
-fn make_folders(root: &Path, name: &Name) -> io::Result<()> {
-    name.folders().try_for_each(|above| make_folder(&above.below(root)))
-}
-
-fn make_folder(path: &Path) -> io::Result<()> {
-    if is_there(path)? { Ok(()) } else { disk::create_folder(path) }
+fn make_folders(root: &Path, name: &Name) -> Result<(), Problem> {
+    name.folders().try_for_each(|above| be_folder(&above.below(root), || above.to_string()))
 }
 
 fn is_there(path: &Path) -> io::Result<bool> {

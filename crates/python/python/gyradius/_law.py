@@ -177,7 +177,9 @@ class Fit(Generic[L]):
 def known(law: Law, what: str, value: Any) -> Any:
     """What is known of a law."""
     if value is None:
-        raise ValueError(f"{what}: not known of {law!r}, or it has none")
+        raise ValueError(
+            f"{what}: not known of {law!r}, or it has none; of a law within a region (inside=) they are not known: take draws"
+        )
     return value
 
 
