@@ -186,3 +186,27 @@ confidence = 0.9
         }
     }
 }
+
+/// Shards find no drivers. Where not everything is kept of the runs, it is until the drivers are found, and then there is what one
+/// process leaves.
+#[test]
+#[cfg(unix)]
+fn drivers_are_found_after_shards_whatever_is_kept() {
+    let scratch = crate::simulator::scratch();
+    let scenario = crate::simulator::SCENARIO.replacen("runs = 4000", "runs = 300", 1);
+    for kept in ["", "rows = \"none\"", "rows = \"failed\"", "columns = [\"y\"]"] {
+        fs::write(scratch.path("k.toml"), format!("drivers = 100\n{kept}\n{scenario}")).unwrap();
+        let study = |out| ["study", "k.toml", "-q", "--out", out];
+        scratch.done(&study("one"), 0);
+        scratch.done(&[&study("it")[..], &["--shard", "1/1"]].concat(), 0);
+        let said = scratch.done(&["report", "it"], 0);
+        assert!(said.contains("what drives the outcome is not found yet"), "{said}");
+        assert!(summary(&scratch.path("it"))["drivers"].as_array().is_none_or(Vec::is_empty));
+        scratch.done(&study("it"), 0);
+        assert!(content(&scratch.path("it")) == content(&scratch.path("one")), "{kept}");
+        assert!(!drivers(&scratch.path("it")).is_null());
+        for out in ["one", "it"] {
+            fs::remove_dir_all(scratch.path(out)).unwrap();
+        }
+    }
+}

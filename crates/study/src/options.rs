@@ -49,6 +49,8 @@ pub enum Notice {
     Again(Again),
     /// The simulator wrote to standard output what it was not asked for.
     Unasked(Unasked),
+    /// What drives the outcome is asked for, and not found by who puts together what shards did.
+    DriversLeft,
 }
 
 impl Options {

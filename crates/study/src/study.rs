@@ -6,7 +6,7 @@ use crate::{
     model::{Model, Separations},
 };
 use gyradius_campaign::{
-    Blocks, CampaignError, Counting, Doing, Folder, MANIFEST, Plan, Progress, Reduced, Runs,
+    Blocks, CampaignError, Counting, Doing, Folder, Kept, MANIFEST, Plan, Progress, Reduced, Runs,
     RunsError, Simulation, Table, disk_left, go_on, memory_left, run_again, run_changed,
     run_missing, threads, told,
 };
@@ -85,6 +85,7 @@ pub(crate) fn do_what_is_left<C: Subject>(
     let place = options.place(scenario.name());
     let models = scenario.prepare(options.stop.as_ref())?;
     let simulations = scenario.simulations(&models)?;
+    let kept = kept(scenario, doing);
     let in_place = OnceLock::<BTreeSet<String>>::new();
     let contents =
         contents(scenario).keeping(|name| in_place.get().is_some_and(|all| all.contains(name)));
@@ -123,7 +124,7 @@ pub(crate) fn do_what_is_left<C: Subject>(
     let manifest = incomplete.then(|| MANIFEST.to_owned());
     let published = blocks.published().into_iter().chain(manifest);
     // What is not all kept is written anew.
-    let _ = in_place.set(published.filter(|_| incomplete || scenario.kept().is_all()).collect());
+    let _ = in_place.set(published.filter(|_| incomplete || kept.is_all()).collect());
     let of = scenario.runs() * simulations.len() as u64;
     // Who puts together what others did does no runs.
     let asked = scenario.drivers().is_some() && doing == Doing::All;
@@ -163,6 +164,9 @@ pub(crate) fn do_what_is_left<C: Subject>(
     scenario.unasked(&models).into_iter().for_each(|unasked| say(Notice::Unasked(unasked)));
 
     let complete = summary.head().is_complete();
+    if complete && doing == Doing::Nothing && scenario.drivers().is_some() {
+        say(Notice::DriversLeft);
+    }
     let mut beside = None;
     if doing == Doing::All {
         let before = || whole_summary::<C>(&place);
@@ -172,14 +176,15 @@ pub(crate) fn do_what_is_left<C: Subject>(
         let (drivers, blocks) = found.inspect_err(|_| blocks.abandon())?;
         (summary.head_mut().drivers, beside) = (drivers, blocks);
     }
+    let keeping = (&kept, counting);
     let written =
-        write(scenario, &simulations, &blocks, (folder, counting), &summary, options, &threads);
+        write(scenario, &simulations, &blocks, (folder, keeping), &summary, options, &threads);
     let (folder, summary) = written.inspect_err(|_| blocks.abandon())?;
     if complete {
         blocks.settle()?;
     }
     beside.map_or(Ok(()), |beside: Blocks| beside.settle())?;
-    let runs = match scenario.kept().is_all() || !complete {
+    let runs = match kept.is_all() || !complete {
         true => runs.into_iter().map(|runs| blocks.in_place(runs)).collect(),
         false => empty_tables(&simulations)?.into_iter().map(Runs::from).collect(),
     };
@@ -223,20 +228,28 @@ pub(crate) fn to_be_done<S: Simulation>(
     Ok(left)
 }
 
+/// What is kept of the runs. Who puts together what shards did finds no drivers, and what finds them afterwards needs the runs: until
+/// then, all is kept.
+fn kept(scenario: &impl Subject, doing: Doing) -> Kept {
+    match doing {
+        Doing::Nothing if scenario.drivers().is_some() => Kept::default(),
+        Doing::Nothing | Doing::All | Doing::Shard(_) => scenario.kept(),
+    }
+}
+
 /// Writes a study and puts it in place; returns where that is, and the summary as it was written.
 fn write<C: Subject>(
     scenario: &C,
     simulations: &[(&str, C::Simulation<'_>)],
     blocks: &Blocks,
-    (mut folder, counting): (Folder<'_>, Counting),
+    (mut folder, keeping): (Folder<'_>, (&Kept, Counting)),
     summary: &C::Summary,
     options: &Options,
     threads: &ThreadPool,
 ) -> Result<(PathBuf, C::Summary), StudyError> {
     if summary.head().is_complete() {
         let empty = empty_tables(simulations)?;
-        let kept = (&scenario.kept(), counting);
-        folder.adopt(blocks, &empty, kept, threads, options.stop.as_deref())?;
+        folder.adopt(blocks, &empty, keeping, threads, options.stop.as_deref())?;
     }
     folder.write("scenario.toml", &scenario.to_toml())?;
     let written = serde_json::to_string_pretty(summary)? + "\n";
