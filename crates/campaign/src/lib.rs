@@ -107,7 +107,8 @@ pub use external::{
 pub use failure::Failure;
 pub use folder::{
     Block, Blocks, Contents, Folder, FolderError, HIDDEN, MANIFEST, Manifest, Reduced, Shared,
-    begun, changed, folder_of, missing_runs, restore, restore_all, told, told_runs, why_unknown,
+    begun, changed, folder_of, missing_runs, replacing, restore, restore_all, told, told_runs,
+    why_unknown,
 };
 pub use forecast::{Forecast, rough_size, rough_time};
 pub use foreign::{Columns, ForeignError, ForeignTable, RowsError, TwiceError};

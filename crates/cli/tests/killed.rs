@@ -180,3 +180,42 @@ fn a_limit_of_the_size_of_files_is_told() {
     }
     assert!(content(&scratch.path("here")) == content(&scratch.path("there")));
 }
+
+/// The study that is there stays the one of the folder until what is to replace it is done, and is told of, reported and replayed.
+#[cfg(unix)]
+#[test]
+fn the_study_that_is_to_be_replaced_is_still_reported() {
+    let scratch = crate::simulator::scratch();
+    let study = ["study", "s.toml", "--runs", "4000", "-q", "--out", "it", "--seed"];
+    scratch.done(&[&study[..], &["1"]].concat(), 0);
+    let study_of = || {
+        let mut files = content(&scratch.path("it"));
+        files.retain(|name, _| !name.starts_with(".gyradius"));
+        files
+    };
+    let before = study_of();
+    let replace = [&study[..], &["2", "--force", "--threads", "1"]].concat();
+    let mut child = scratch.command(&replace).stderr(Stdio::null()).spawn().unwrap();
+    while !scratch.path("it/.gyradius/campaign/all").exists() {
+        assert!(child.try_wait().unwrap().is_none());
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    for (verb, code) in [
+        (&["status", "it"][..], 0),
+        (&["report", "it"], 0),
+        (&["report", "it", "--out", "elsewhere"], 0),
+        (&["replay", "it", "--run", "7", "--out", "replayed"], 0),
+    ] {
+        let said = scratch.done(verb, code);
+        let is_told = said.contains("runs of another study are in this folder too");
+        assert!(
+            is_told && said.contains("seed is 2 there and 1 here") || verb[0] == "replay",
+            "{said}"
+        );
+        assert!(study_of() == before, "{verb:?}");
+    }
+    scratch.done(&replace, 0);
+    assert!(!scratch.done(&["status", "it"], 0).contains("another study"));
+    scratch.done(&[&study[..], &["2"]].concat(), 0);
+}

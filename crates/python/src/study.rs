@@ -6,10 +6,10 @@ mod kept;
 mod watched;
 mod words;
 
-use gyradius_campaign::{Kept, Rows, StoppingRule, Verdict, begun, folder_of};
+use gyradius_campaign::{Kept, Rows, StoppingRule, Verdict, folder_of};
 use gyradius_study::{
     AnyScenario, Judged, Notice, Options, Replay, ScenarioError, SimulatorReplay, StudyOutcome,
-    Which,
+    Which, begun_study,
 };
 use pyo3::{Bound, Py, PyAny, PyResult, Python, pyclass, pymethods, types::PyDict};
 use std::{
@@ -54,7 +54,7 @@ impl ScenarioCore {
         let is_folder = path.is_dir();
         let folder = if is_folder { path.clone() } else { folder_of(&path).to_owned() };
         let file = if is_folder { path.join("scenario.toml") } else { path };
-        let begun = if is_folder { begun(&folder) } else { None };
+        let begun = if is_folder { begun_study(&folder) } else { None };
         let scenario = if begun.is_none() && function.is_none() && outputs.is_none() {
             AnyScenario::read(&file).map_err(|error| match error {
                 ScenarioError::Read { path, problem } => unreadable(&path, &problem),

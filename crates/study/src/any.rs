@@ -21,6 +21,7 @@ use crate::{
     shards,
     study::{self},
     subject::{Subject, Summarized},
+    unfinished::begun_study,
 };
 
 /// A scenario of separations, or of a simulator of the user's own, which has a table `[simulation]`.
@@ -304,7 +305,7 @@ impl Status {
 /// Whether a study was begun in a folder whose runs are not all done, or not put together.
 #[must_use]
 pub fn is_begun(folder: &Path) -> bool {
-    begun(folder).is_some()
+    begun_study(folder).is_some()
 }
 
 /// Puts together what is there of a study whose runs are not all done, in its folder: the study, if nothing is
@@ -317,7 +318,7 @@ pub fn put_together(
     options: &Options,
     say: &dyn Fn(Notice),
 ) -> Result<StudyOutcome, StudyError> {
-    let text = begun(folder).ok_or_else(|| StudyError::Absent {
+    let text = begun_study(folder).ok_or_else(|| StudyError::Absent {
         path: folder.to_owned(),
         problem: "it holds no study that was begun".to_owned(),
     })?;

@@ -110,6 +110,7 @@ pub use shards::{ModelStatus, Status};
 pub use simulator::{SimulatorReplay, SimulatorScenario, SimulatorSummary};
 pub use study::{Study, restore_studies};
 pub use summary::Summary;
+pub use unfinished::{begun_study, replacement};
 pub use unmatched::UnmatchedLaw;
 
 #[cfg(doctest)]

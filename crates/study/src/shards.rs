@@ -15,6 +15,7 @@ use crate::{
     scenario::read_file,
     study::{count, foretell, plan, same_as_before},
     subject::Subject,
+    unfinished::{begun_study, replacement},
 };
 
 /// That the runs of a scenario can be shared out: that their number does not follow from all of them.
@@ -141,7 +142,7 @@ fn agree<C: Subject>(scenario: &C, folder: &Path) -> Result<(), StudyError> {
 /// The text of the scenario of the study in a folder, as it was begun or done.
 pub(crate) fn text(folder: &Path) -> Result<String, StudyError> {
     let absent = |problem: String| StudyError::Absent { path: folder.to_owned(), problem };
-    if let Some(text) = begun(folder) {
+    if let Some(text) = begun_study(folder) {
         return Ok(text);
     }
     if let Err(error) = fs::read_dir(folder.join(HIDDEN))
@@ -172,6 +173,8 @@ pub struct Status {
     pub missing: Vec<Missing>,
     /// What became of a file without which the study is not complete, in words, if it is not as it was written.
     pub changed: Option<String>,
+    /// Of another study that was begun to replace it, in words, if one was.
+    pub replacement: Option<String>,
 }
 
 /// What of the runs of a model is there.
@@ -192,7 +195,7 @@ impl Status {
         let blocks = told(folder, &contents, &identity)?;
         // Of a complete study whose blocks are lost, all runs are missing.
         if blocks.is_empty()
-            && begun(folder).is_none()
+            && begun_study(folder).is_none()
             && let Some(problem) = why_unknown(folder, &contents, &identity)?
         {
             return Err(StudyError::Absent { path: folder.to_owned(), problem });
@@ -209,7 +212,7 @@ impl Status {
             let gaps = missing_runs(ranges, scenario.runs(), u64::MAX);
             missing.extend(gaps.into_iter().map(|runs| Missing::new(model, runs)));
         }
-        let changed = match begun(folder) {
+        let changed = match begun_study(folder) {
             // The scenario is this one.
             None => changed(folder, "study", &["summary.json"])?,
             // It is written when all is put together.
@@ -224,6 +227,7 @@ impl Status {
             runs_per_model: scenario.runs(),
             models,
             missing,
+            replacement: replacement(folder),
         })
     }
 }

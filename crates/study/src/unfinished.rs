@@ -1,22 +1,37 @@
 //! The scenario of a study that was begun in a folder, and whose runs are not all done, or not put together.
 
-use gyradius_campaign::{Identity, Manifest, begun, restore};
+use gyradius_campaign::{Identity, begun, replacing, restore};
 use std::path::Path;
 
 use crate::{ResultsError, contents::identity, subject::Subject};
 
-/// The scenario, if such a study is there. Beside a complete study that is another one, it is not the study of the folder yet.
+/// The text of the scenario, if such a study is there. Beside a complete study that it is to replace, it is not the study of the folder
+/// yet.
+#[must_use]
+pub fn begun_study(folder: &Path) -> Option<String> {
+    begun(folder).filter(|_| replacing(folder).is_none())
+}
+
+/// What there is to say of a study that was begun in a folder to replace the one that is there, if there are two.
+#[must_use]
+pub fn replacement(folder: &Path) -> Option<String> {
+    replacing(folder).map(|difference| {
+        format!(
+            "runs of another study are in this folder too, which is to replace this one once all of them are done: {difference}. \
+             `gyradius study` of that one goes on with --force; of this one, --force drops those runs"
+        )
+    })
+}
+
+/// The scenario, if such a study is there.
 ///
 /// # Errors
 /// The scenario cannot be read, or its runs were begun by another version.
 pub(crate) fn unfinished<C: Subject>(folder: &Path) -> Result<Option<C>, ResultsError> {
     restore(folder)?;
-    let (Some(there), Some(text)) = (Identity::begun(folder), begun(folder)) else {
+    let (Some(there), Some(text)) = (Identity::begun(folder), begun_study(folder)) else {
         return Ok(None);
     };
-    if Manifest::read(folder).is_ok_and(|all| all.identity().difference(&there).is_some()) {
-        return Ok(None);
-    }
     let scenario = C::resolved(&text)?;
     match identity(&scenario).difference(&there) {
         None => Ok(Some(scenario)),

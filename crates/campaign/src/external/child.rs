@@ -153,7 +153,7 @@ impl Child {
         match self.kill() {
             (_, last_line) if !ended => Err(patience.over(last_line)),
             (Some(status), last_line) if !status.success() => {
-                Err(Trouble::Ended { status, last_line })
+                Err(Trouble::Status { status, last_line })
             }
             (Some(_) | None, _) => Ok(()),
         }

@@ -23,6 +23,8 @@ pub(super) enum Trouble {
     Stopped,
     /// The process ended by itself.
     Ended { status: ExitStatus, last_line: Option<String> },
+    /// One that is started for each run ended otherwise than well.
+    Status { status: ExitStatus, last_line: Option<String> },
     /// The process closed standard input or output and did not end.
     Closed { last_line: Option<String> },
     /// The answer has more bytes than a line may have.
@@ -73,6 +75,7 @@ impl Trouble {
             | Self::Timeout { .. }
             | Self::Stopped
             | Self::Ended { .. }
+            | Self::Status { .. }
             | Self::Closed { .. }
             | Self::TooLong { .. }
             | Self::Early { .. }
@@ -137,6 +140,10 @@ impl Trouble {
             Self::Ended { status, last_line } => (
                 "the simulator ended",
                 format!("the simulator ended with {status} before it answered{}", after(last_line)),
+            ),
+            Self::Status { status, last_line } => (
+                "the simulator ended",
+                format!("the simulator ended with {status}{}", after(last_line)),
             ),
             Self::Closed { last_line } => (
                 "the simulator closed its pipes",

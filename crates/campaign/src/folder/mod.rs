@@ -44,7 +44,7 @@ pub use problem::FolderError;
 pub(crate) use problem::Problem;
 use record::Record;
 pub use shared::Shared;
-pub use told::{begun, changed, missing_runs, told, told_runs, why_unknown};
+pub use told::{begun, changed, missing_runs, replacing, told, told_runs, why_unknown};
 
 /// Says in what a text differs from another.
 type Telling<'a> = Box<dyn Fn(&str) -> Option<String> + 'a>;

@@ -60,7 +60,7 @@ pub(crate) enum Problem {
     Busy,
     #[error(
         "it already holds another {what} or other files (a copy without the folder {} counts as other files); \
-         choose another folder with --out, or pass --force to replace what a {what} wrote there",
+         choose another folder with --out, or pass --force to write beside other files, none of which is replaced",
         HIDDEN
     )]
     Occupied { what: &'static str },
@@ -71,7 +71,7 @@ pub(crate) enum Problem {
     Other { what: &'static str, difference: String },
     #[error(
         "it holds the finished runs of another campaign that was not completed: {difference}; choose another \
-         folder with --out, or pass --force to drop those runs"
+         folder with --out, or pass --force, which no --shard may have, to drop those runs"
     )]
     Unfinished { difference: Difference },
     #[error(

@@ -17,7 +17,12 @@ use super::{
     name::{Found, HIDDEN, Name, look},
     record::Record,
 };
-use crate::{identity::Identity, kept::Kept, runs::Runs, table::Table};
+use crate::{
+    identity::{Difference, Identity},
+    kept::Kept,
+    runs::Runs,
+    table::Table,
+};
 
 /// The text from which the unfinished campaign in a folder was begun, if there is one.
 #[must_use]
@@ -25,6 +30,14 @@ pub fn begun(place: &Path) -> Option<String> {
     let area = Area::of(place);
     area.identity().ok()??;
     area.mark()
+}
+
+/// What the unfinished campaign in a folder has otherwise than the complete one that it is to replace, and that is the one of the
+/// folder until then, if there are two.
+#[must_use]
+pub fn replacing(place: &Path) -> Option<Difference> {
+    let unfinished = Identity::begun(place)?;
+    Manifest::read(place).ok()?.identity().difference(&unfinished)
 }
 
 impl Identity {

@@ -369,6 +369,15 @@ impl From<Requirement> for RequirementForm {
     }
 }
 
+/// What is wrong with two limits, or with the only one.
+fn limits(lower: f64, upper: f64) -> String {
+    if lower.total_cmp(&upper).is_eq() {
+        return format!("the limit is {}: it must be finite", plain(lower));
+    }
+    let [lower, upper] = [lower, upper].map(plain);
+    format!("the limits are {lower} and {upper}: they must be finite, and the lower one first")
+}
+
 /// Why a requirement is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -401,7 +410,7 @@ pub enum RequirementError {
     #[error("there must be one of at_most, at_least and between")]
     OneBound,
     /// The limits are not finite, or in the wrong order.
-    #[error("the limits are {} and {}: they must be finite, and the lower one first", plain(*lower), plain(*upper))]
+    #[error("{}", limits(*lower, *upper))]
     Limits {
         /// The lower one, or the one that there is.
         lower: f64,

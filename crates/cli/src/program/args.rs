@@ -432,7 +432,7 @@ pub(crate) struct ReplayArgs {
 
     /// Which run, from 0
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole,
-          required_unless_present = "vehicle")]
+          required_unless_present_any = ["vehicle", "flight"])]
     pub(crate) run: Option<u64>,
 
     /// In the place of --run: which vehicle of a scenario with vehicles, from 0
@@ -440,7 +440,7 @@ pub(crate) struct ReplayArgs {
     pub(crate) vehicle: Option<u64>,
 
     /// Which flight of the vehicle, from 0
-    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = whole, requires = "vehicle")]
+    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = whole, requires = "vehicle", conflicts_with = "run")]
     pub(crate) flight: Option<u64>,
 
     /// Which model [default: the first of the scenario]

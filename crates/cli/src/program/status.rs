@@ -56,5 +56,8 @@ fn text(status: &Status, folder: &Path) -> String {
             let _ = writeln!(text, "  and {} more ranges", missing.len() - MOST);
         }
     }
+    if let Some(replacement) = &status.replacement {
+        let _ = writeln!(text, "Note: {replacement}.");
+    }
     text
 }

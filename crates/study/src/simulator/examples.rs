@@ -7,24 +7,44 @@ use std::{fs, path::Path};
 use super::{SimulatorScenario, SimulatorSummary};
 use crate::{Options, Study};
 
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/simulators");
+
 /// Runs an example in Python; none where Python or one of the modules that it imports is not there.
 fn example(name: &str, modules: &str) -> Option<(tempfile::TempDir, Study<SimulatorSummary>)> {
+    done(&Path::new(FOLDER).join(name), modules)
+}
+
+/// The same of a scenario elsewhere.
+fn done(file: &Path, modules: &str) -> Option<(tempfile::TempDir, Study<SimulatorSummary>)> {
     let import = format!("import {modules}");
     let there = std::process::Command::new("python3").args(["-c", &import]).output();
     if !there.is_ok_and(|output| output.status.success()) {
         return None;
     }
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/simulators"));
-    let scenario = SimulatorScenario::read(&folder.join(name)).unwrap().with_runs(30).unwrap();
+    let scenario = SimulatorScenario::read(file).unwrap().with_runs(30).unwrap();
     let out = tempfile::tempdir().unwrap();
     let options = Options::to(out.path().join("out"));
     let study = scenario.study(&options, &|_| {}, &|_| {}).unwrap();
     for runs in study.runs() {
         let table = runs.table().unwrap();
         let failed = table.failures().next().map(|(_, failure)| failure.to_string());
-        assert_eq!(failed, None, "{name}");
+        assert_eq!(failed, None, "{}", file.display());
     }
     Some((out, study))
+}
+
+/// The scenario that the documentation shows first is one of this script.
+#[test]
+fn the_documented_scenario_runs() {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/simulators.md");
+    let page = fs::read_to_string(page).unwrap();
+    let (_, block) = page.split_once("```toml\n").unwrap();
+    let (block, _) = block.split_once("```\n").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let script = Path::new(FOLDER).join("spin_up.py");
+    fs::copy(script, folder.path().join("spin_up.py")).unwrap();
+    fs::write(folder.path().join("spin_up.toml"), block).unwrap();
+    done(&folder.path().join("spin_up.toml"), "json");
 }
 
 /// The satellite spins as the motor's impulse says, and in Basilisk as in the script without packages.
