@@ -55,6 +55,7 @@ fn vehicles_take_the_place_of_runs() {
         (&["s", "--flight", "0"], "--vehicle"),
         (&["s"], "--run"),
         (&["s", "--run", "1", "--vehicle", "0", "--flight", "0"], "cannot be used with"),
+        (&["s", "--run", "1", "--flight", "0"], "cannot be used with"),
     ] {
         let (code, text) = of(&[&["replay"], arguments].concat());
         assert!(code == Some(2) && text.contains(expected), "{text}");
