@@ -21,9 +21,9 @@ use super::{
     Folder, FolderError, Problem,
     area::{Area, line},
     disk,
-    hidden::{Hidden, be_folder},
+    hidden::{Hidden, be_folder, real_folder},
     manifest::Block,
-    name::{Found, HIDDEN, Name, look, said},
+    name::{Found, HIDDEN, Name, look},
     shared::Shared,
     told::{missing_runs, published},
     unobstructed,
@@ -196,17 +196,8 @@ impl Blocks {
         // What stands behind a link is not the program's to put aside.
         let folder = |block: &Block| self.path(block).parent().map(Path::to_owned);
         for folder in blocks.iter().filter_map(folder).collect::<BTreeSet<_>>() {
-            let name = folder.strip_prefix(&self.place).unwrap_or(&folder).display().to_string();
-            match fs::symlink_metadata(&folder) {
-                Ok(found) if !found.is_dir() => {
-                    return Err(Problem::Kind {
-                        name,
-                        is: said(found.file_type()),
-                        should: "folder",
-                    });
-                }
-                Ok(_) | Err(_) => {}
-            }
+            let name = || folder.strip_prefix(&self.place).unwrap_or(&folder).display().to_string();
+            real_folder(&folder, name)?;
         }
         let states: Vec<io::Result<Option<String>>> =
             threads.install(|| blocks.par_iter().map(|block| self.fault(block)).collect());

@@ -196,9 +196,16 @@ pub(super) fn be_folder(path: &Path, name: impl FnOnce() -> String) -> Result<()
             made => return Ok(made?),
         }
     }
-    let kind = fs::symlink_metadata(path)?.file_type();
-    if kind.is_dir() {
-        return Ok(());
+    real_folder(path, name)
+}
+
+/// That nothing but a folder is there, if anything is: what stands behind a link is not the program's.
+pub(super) fn real_folder(path: &Path, name: impl FnOnce() -> String) -> Result<(), Problem> {
+    match fs::symlink_metadata(path) {
+        Ok(found) if !found.is_dir() => {
+            let is = said(found.file_type());
+            Err(Problem::Kind { name: name(), is, should: "folder" })
+        }
+        Ok(_) | Err(_) => Ok(()),
     }
-    Err(Problem::Kind { name: name(), is: said(kind), should: "folder" })
 }
