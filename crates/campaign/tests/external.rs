@@ -3,6 +3,7 @@
 
 mod function;
 mod order;
+mod status;
 
 use gyradius_campaign::{
     Column, ExternalSimulation, Failure, Inputs, Kind, Program, ProgramError, Simulator, Streams,
@@ -439,18 +440,6 @@ fn files_of_the_folder_are_found() {
     // The program itself is one of the system's, unless it is said to be here.
     let program = Program::new(&["spin.sh".into()], folder.path()).unwrap();
     assert_eq!(program.words(), ["spin.sh"]);
-}
-
-/// One that is started for each run fails a run by its status, whatever it has answered.
-#[cfg(unix)]
-#[test]
-fn a_status_counts_whatever_was_answered() {
-    let simulator = simulator("answer $run; exit 3", true, 20.0);
-    let table = table(&simulator, &BTreeSet::from([1]), 3, 1);
-    let failures: Vec<_> = table.failures().map(|(_, failure)| failure.to_string()).collect();
-    assert_eq!(failures.len(), 1, "{failures:?}");
-    assert!(failures[0].contains("the simulator ended with exit status: 3"), "{failures:?}");
-    assert!(!failures[0].contains("before it answered"), "{failures:?}");
 }
 
 /// What a simulator starts goes with it, when it misbehaves and at the end; and so does one that does not end by itself.
