@@ -180,15 +180,15 @@ impl Stratum {
             let term = |failures| steps(self.all.term(Cell { runs: cell.runs, failures }));
             let ways: Vec<(usize, f64)> =
                 numbers.all().map(|(failures, weight)| (term(failures), weight)).collect();
-            let all = |number: usize| {
-                let mut all = Masses::none(last);
+            let sum = |number: usize| {
+                let mut sum = Masses::none(last);
                 let least = (number + 1).saturating_sub(dealt.len());
                 for (i, (term, weight)) in ways.iter().enumerate().take(number + 1).skip(least) {
-                    all.add_shifted(&dealt[number - i], *term, *weight);
+                    sum.add_shifted(&dealt[number - i], *term, *weight);
                 }
-                all
+                sum.ended()
             };
-            let next = (0..dealt.len() + ways.len() - 1).map(all).collect();
+            let next = (0..dealt.len() + ways.len() - 1).map(sum).collect();
             first += numbers.first;
             dealt = next;
         }
@@ -255,7 +255,7 @@ fn p_value(strata: &[Stratum], freedom: usize) -> f64 {
         for (at, mass) in own.masses.iter().enumerate().filter(|(_, mass)| **mass > 0.0) {
             next.add_shifted(&all, at, *mass);
         }
-        all = next;
+        all = next.ended();
     }
     // By what the large cells must add.
     let tail = |missing: f64| match freedom {
@@ -273,11 +273,13 @@ struct Masses {
     masses: Vec<f64>,
     /// Outside of these places there is nothing but in the last place: until several cells are dealt to, most are empty.
     filled: std::ops::Range<usize>,
+    /// Once all are added: that of the steps of each filled place or more.
+    beyond: Vec<f64>,
 }
 
 impl Masses {
     fn none(last: usize) -> Self {
-        Self { masses: vec![0.0; last + 1], filled: last..0 }
+        Self { masses: vec![0.0; last + 1], filled: last..0, beyond: Vec::new() }
     }
 
     /// All in the first place.
@@ -285,21 +287,39 @@ impl Masses {
         let mut masses = Self::none(last);
         masses.masses[0] = 1.0;
         masses.filled = 0..1.min(last);
-        masses
+        masses.ended()
     }
 
-    /// Adds others times a weight so many places further on; what would stand beyond the last place stands there.
+    fn ended(mut self) -> Self {
+        let mut sum = self.masses[self.masses.len() - 1];
+        // Filled places are none, or from one to another.
+        let filled = self.filled.start..self.filled.end.max(self.filled.start);
+        self.beyond = self.masses[filled].to_vec();
+        for mass in self.beyond.iter_mut().rev() {
+            sum += *mass;
+            *mass = sum;
+        }
+        self
+    }
+
+    /// The probability of so many steps or more.
+    fn beyond(&self, steps: usize) -> f64 {
+        let place = steps.saturating_sub(self.filled.start);
+        self.beyond.get(place).copied().unwrap_or(self.masses[self.masses.len() - 1])
+    }
+
+    /// Adds others, which are ended, times a weight so many places further on; what would stand beyond the last place stands there.
     fn add_shifted(&mut self, of: &Self, places: usize, weight: f64) {
         let last = self.masses.len() - 1;
-        let inside = of.filled.start..of.filled.end.min(last.saturating_sub(places));
+        let room = last.saturating_sub(places);
+        let inside = of.filled.start..of.filled.end.min(room);
         if inside.start < inside.end {
             let to = inside.start + places..inside.end + places;
             let pairs = self.masses[to.clone()].iter_mut().zip(&of.masses[inside.clone()]);
             pairs.for_each(|(to, of)| *to += of * weight);
             self.filled = self.filled.start.min(to.start)..self.filled.end.max(to.end);
         }
-        let beyond = inside.end.max(inside.start).min(of.filled.end)..of.filled.end;
-        self.masses[last] += (of.masses[beyond].iter().sum::<f64>() + of.masses[last]) * weight;
+        self.masses[last] += of.beyond(room) * weight;
     }
 }
 
