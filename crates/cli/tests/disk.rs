@@ -61,6 +61,7 @@ fn a_study_survives_a_full_disk() {
         let (code, error, finished) = done(size);
         assert_eq!(code, "2", "{said}");
         assert!(error.contains("small/it") && error.contains("No space left"), "{error}");
+        assert!(error.contains("What was finished stays, and the same command goes on"), "{error}");
         assert!(finished >= before, "{said}");
         before = finished;
     }

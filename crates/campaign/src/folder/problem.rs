@@ -45,10 +45,20 @@ impl FolderError {
     }
 }
 
+/// What there is to do about a full disk.
+fn how_on(error: &io::Error) -> &'static str {
+    match error.kind() {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            ". What was finished stays, and the same command goes on once there is room"
+        }
+        _ => "",
+    }
+}
+
 /// What is wrong with a folder.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Problem {
-    #[error("it cannot be written: {0}")]
+    #[error("it cannot be written: {0}{how}", how = how_on(.0))]
     Io(io::Error),
     #[error("stopped")]
     Stopped,
