@@ -172,7 +172,7 @@ impl Stratum {
     }
 
     /// The probabilities of a statistic of 0, 1… steps, the last of that or more.
-    fn distribution(&self, steps: &dyn Fn(f64) -> usize, last: usize) -> Masses {
+    fn distribution(&self, steps: &dyn Fn(f64) -> usize, last: usize) -> Vec<f64> {
         // By failures dealt so far, from the first number on.
         let mut first = 0;
         let mut dealt = vec![Masses::certain(last)];
@@ -181,26 +181,24 @@ impl Stratum {
             let ways: Vec<(usize, f64)> =
                 numbers.all().map(|(failures, weight)| (term(failures), weight)).collect();
             let sum = |number: usize| {
-                let mut sum = Masses::none(last);
                 let least = (number + 1).saturating_sub(dealt.len());
-                for (i, (term, weight)) in ways.iter().enumerate().take(number + 1).skip(least) {
-                    sum.add_shifted(&dealt[number - i], *term, *weight);
-                }
-                sum.ended()
+                let ways = ways.iter().enumerate().take(number + 1).skip(least);
+                Masses::sum(last, ways.map(|(i, way)| (&dealt[number - i], way.0, way.1)))
             };
             let next = (0..dealt.len() + ways.len() - 1).map(sum).collect();
             first += numbers.first;
             dealt = next;
         }
-        let mut found = Masses::none(last);
         let runs = Cell::sum(&self.large).runs;
-        for (before, weight) in self.numbers_beside(first..=first + dealt.len() as u64 - 1).all() {
+        let beside = self.numbers_beside(first..=first + dealt.len() as u64 - 1);
+        let ways = beside.all().map(|(before, weight)| {
             let failures = self.all.failures - before;
             let term = steps(self.all.term(Cell { runs, failures }));
-            found.add_shifted(&dealt[(before - first) as usize], term, weight);
-        }
-        let total: f64 = found.masses.iter().sum();
-        found.masses.iter_mut().for_each(|mass| *mass /= total);
+            (&dealt[(before - first) as usize], term, weight)
+        });
+        let mut found = Masses::sum(last, ways).masses;
+        let total: f64 = found.iter().sum();
+        found.iter_mut().for_each(|mass| *mass /= total);
         found
     }
 }
@@ -251,11 +249,8 @@ fn p_value(strata: &[Stratum], freedom: usize) -> f64 {
     let mut all = Masses::certain(last);
     for stratum in strata {
         let own = stratum.distribution(&steps, last);
-        let mut next = Masses::none(last);
-        for (at, mass) in own.masses.iter().enumerate().filter(|(_, mass)| **mass > 0.0) {
-            next.add_shifted(&all, at, *mass);
-        }
-        all = next.ended();
+        let own = own.iter().enumerate().filter(|(_, mass)| **mass > 0.0);
+        all = Masses::sum(last, own.map(|(at, mass)| (&all, at, *mass)));
     }
     // By what the large cells must add.
     let tail = |missing: f64| match freedom {
@@ -271,55 +266,49 @@ fn p_value(strata: &[Stratum], freedom: usize) -> f64 {
 /// The probabilities of 0, 1… steps, of which the last place is for that or more.
 struct Masses {
     masses: Vec<f64>,
-    /// Outside of these places there is nothing but in the last place: until several cells are dealt to, most are empty.
-    filled: std::ops::Range<usize>,
-    /// Once all are added: that of the steps of each filled place or more.
+    /// Where the first of them is that is not zero, or the last place.
+    first: usize,
+    /// From there on, the probability of so many steps or more. Behind these, there is nothing but in the last place: until several
+    /// cells are dealt to, most places are empty.
     beyond: Vec<f64>,
 }
 
 impl Masses {
-    fn none(last: usize) -> Self {
-        Self { masses: vec![0.0; last + 1], filled: last..0, beyond: Vec::new() }
-    }
-
     /// All in the first place.
     fn certain(last: usize) -> Self {
-        let mut masses = Self::none(last);
-        masses.masses[0] = 1.0;
-        masses.filled = 0..1.min(last);
-        masses.ended()
+        let mut masses = vec![0.0; last + 1];
+        masses[0] = 1.0;
+        Self { masses, first: 0, beyond: vec![1.0; 1.min(last)] }
     }
 
-    fn ended(mut self) -> Self {
-        let mut sum = self.masses[self.masses.len() - 1];
-        // Filled places are none, or from one to another.
-        let filled = self.filled.start..self.filled.end.max(self.filled.start);
-        self.beyond = self.masses[filled].to_vec();
-        for mass in self.beyond.iter_mut().rev() {
+    /// The sum of others, each so many places further on and times a weight; what would stand beyond the last place stands there.
+    fn sum<'a>(last: usize, of: impl Iterator<Item = (&'a Self, usize, f64)>) -> Self {
+        let mut masses = vec![0.0; last + 1];
+        let (mut first, mut end) = (last, 0);
+        for (other, places, weight) in of {
+            let room = last.saturating_sub(places);
+            let inside = other.first..(other.first + other.beyond.len()).min(room);
+            if inside.start < inside.end {
+                let to = inside.start + places..inside.end + places;
+                let pairs = masses[to.clone()].iter_mut().zip(&other.masses[inside]);
+                pairs.for_each(|(to, of)| *to += of * weight);
+                (first, end) = (first.min(to.start), end.max(to.end));
+            }
+            masses[last] += other.beyond(room) * weight;
+        }
+        let mut sum = masses[last];
+        let mut beyond = masses[first..end.max(first)].to_vec();
+        for mass in beyond.iter_mut().rev() {
             sum += *mass;
             *mass = sum;
         }
-        self
+        Self { masses, first, beyond }
     }
 
     /// The probability of so many steps or more.
     fn beyond(&self, steps: usize) -> f64 {
-        let place = steps.saturating_sub(self.filled.start);
+        let place = steps.saturating_sub(self.first);
         self.beyond.get(place).copied().unwrap_or(self.masses[self.masses.len() - 1])
-    }
-
-    /// Adds others, which are ended, times a weight so many places further on; what would stand beyond the last place stands there.
-    fn add_shifted(&mut self, of: &Self, places: usize, weight: f64) {
-        let last = self.masses.len() - 1;
-        let room = last.saturating_sub(places);
-        let inside = of.filled.start..of.filled.end.min(room);
-        if inside.start < inside.end {
-            let to = inside.start + places..inside.end + places;
-            let pairs = self.masses[to.clone()].iter_mut().zip(&of.masses[inside.clone()]);
-            pairs.for_each(|(to, of)| *to += of * weight);
-            self.filled = self.filled.start.min(to.start)..self.filled.end.max(to.end);
-        }
-        self.masses[last] += of.beyond(room) * weight;
     }
 }
 
