@@ -68,11 +68,7 @@ impl Hidden {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => false,
             Err(error) => return Err(error.into()),
         };
-        let kind = fs::symlink_metadata(place.join(HIDDEN))?.file_type();
-        if !kind.is_dir() {
-            let (name, is) = (HIDDEN.to_owned(), said(kind));
-            return Err(Problem::Kind { name, is, should: "folder" });
-        }
+        real_folder(&place.join(HIDDEN), || HIDDEN.to_owned())?;
         let path = place.join(HIDDEN).join("lock");
         let (lock, made_lock) = match disk::create_file(&path) {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {

@@ -34,7 +34,7 @@ use std::{
 
 pub use adopt::Reduced;
 pub use blocks::Blocks;
-use hidden::Hidden;
+use hidden::{Hidden, real_folder};
 use journal::{Journal, Left, Replacement};
 pub use manifest::{Block, MANIFEST, Manifest};
 pub(crate) use manifest::{RUNS, damaged, is_zero};
@@ -341,12 +341,7 @@ fn check(
     let (folders, files): (Vec<_>, Vec<_>) =
         contents.certain.iter().partition(|name| name.ends_with('/'));
     for name in folders.iter().map(|name| name.trim_end_matches('/')) {
-        if let Ok(found) = fs::symlink_metadata(place.join(name))
-            && !found.is_dir()
-        {
-            let is = name::said(found.file_type());
-            return Err(Problem::Kind { name: name.to_owned(), is, should: "folder" });
-        }
+        real_folder(&place.join(name), || name.to_owned())?;
     }
     let files = files.iter().map(|name| Name::new(name)).collect::<Result<Vec<_>, _>>()?;
     let mark = Name::new(contents.mark)?;

@@ -2,6 +2,7 @@
 
 use gyradius_campaign::{
     Block, Cell, Column, Identity, Kept, MANIFEST, Manifest, Row, Rows, RunsError, Table, read_run,
+    replacing,
 };
 use parquet::errors::ParquetError;
 use std::{
@@ -45,11 +46,7 @@ impl Held {
         let manifest = Manifest::read(folder);
         let (model, run) = (own.model(), own.first());
         // Until a study is put together, its blocks are elsewhere, also those that take the place of blocks that failed.
-        let begun = Identity::begun(folder);
-        let is_it = |there: &Identity| {
-            manifest.as_ref().map_or(true, |all| all.identity().difference(there).is_none())
-        };
-        let goes_on = begun.as_ref().is_some_and(is_it);
+        let goes_on = Identity::begun(folder).is_some() && replacing(folder).is_none();
         if goes_on
             && let Some((block, path)) =
                 Block::begun(folder, model, run).map_err(ResultsError::from)?
