@@ -205,10 +205,11 @@ fn the_study_that_is_to_be_replaced_is_still_reported() {
         (&["status", "it"][..], 0),
         (&["report", "it"], 0),
         (&["report", "it", "--out", "elsewhere"], 0),
+        (&["study", "s.toml", "--runs", "4000", "--out", "it", "--seed", "1"], 0),
         (&["replay", "it", "--run", "7", "--out", "replayed"], 0),
     ] {
         let said = scratch.done(verb, code);
-        let is_told = said.contains("runs of another study are in this folder too");
+        let is_told = said.contains("the folder also holds runs of another study");
         assert!(
             is_told && said.contains("seed is 2 there and 1 here") || verb[0] == "replay",
             "{said}"

@@ -173,6 +173,7 @@ impl ScenarioCore {
                 let warning = match notice {
                     Notice::Damaged { block, .. } => format!("{block}: its runs were done again"),
                     Notice::Unasked(unasked) => unasked.to_string(),
+                    Notice::Replacement(told) => words::translated(&told),
                     // The enum may grow.
                     _ => return,
                 };

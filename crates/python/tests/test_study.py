@@ -545,6 +545,29 @@ def test_progress_is_told(capsys: pytest.CaptureFixture[str]) -> None:
         gyradius.study(scenario(), slow, progress="bar")  # type: ignore[arg-type]
 
 
+def test_a_study_is_read_until_what_replaces_it_is_done(tmp_path: Path) -> None:
+    whole = gyradius.study(scenario(runs=600), simulation=double, out=tmp_path)
+    before = (tmp_path / "summary.json").read_bytes()
+    calls = []
+
+    def stops(inputs: dict[str, float]) -> dict[str, float]:
+        calls.append(1)
+        if len(calls) == 400:
+            raise KeyboardInterrupt
+        return double(inputs)
+
+    stops.__qualname__ = double.__qualname__
+    other = scenario(runs=600, seed=6)
+    with pytest.raises(KeyboardInterrupt):
+        gyradius.study(other, simulation=stops, out=tmp_path, force=True, threads=1)
+    told = "to replace this one once they are all done: seed is 6 there and 5 here. .* pass force=True"
+    with pytest.warns(RuntimeWarning, match=told):
+        again = gyradius.study(scenario(runs=600), simulation=double, out=tmp_path)
+    assert again.runs["all"] == whole.runs["all"] and (tmp_path / "summary.json").read_bytes() == before
+    with pytest.raises(ValueError, match="another study"):
+        gyradius.study(other, simulation=double, out=tmp_path)
+
+
 @pytest.mark.parametrize("way", ["os.kill(os.getpid(), signal.SIGINT)", "raise KeyboardInterrupt"])
 def test_interrupts_stop_and_the_same_call_goes_on(way: str, tmp_path: Path) -> None:
     out = tmp_path / "out"

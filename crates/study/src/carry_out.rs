@@ -10,6 +10,7 @@ use crate::{
     read_only::complete_study,
     study::{do_what_is_left, plan, same_as_before, to_be_done},
     subject::Subject,
+    unfinished::replacement,
 };
 
 /// Does the runs of a scenario until they have shown enough, in blocks that are not put together. Returns the scenario with
@@ -100,10 +101,16 @@ pub(crate) fn carry_out<C: Subject>(
         Ok(None) => do_what_is_left(scenario, options, (Doing::All, None), progress, say),
         Err(error) => Err(error),
     };
+    let place = options.place(scenario.name());
+    let is_only_read = |error: &StudyError| {
+        matches!(error, StudyError::ReadOnly { .. }) || replacement(&place).is_some()
+    };
     match done {
         // There may be nothing to be written.
-        Err(error @ StudyError::ReadOnly { .. }) if !options.force && !options.retry_failed => {
-            complete_study(scenario, options)?.ok_or(error)
+        Err(error) if !options.force && !options.retry_failed && is_only_read(&error) => {
+            let study = complete_study(scenario, options)?.ok_or(error)?;
+            replacement(&place).into_iter().for_each(|told| say(Notice::Replacement(told)));
+            Ok(study)
         }
         done => done,
     }

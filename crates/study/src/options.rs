@@ -51,6 +51,8 @@ pub enum Notice {
     Unasked(Unasked),
     /// What drives the outcome is asked for, and not found by who puts together what shards did.
     DriversLeft,
+    /// Another study was begun in the folder to replace this one, in words.
+    Replacement(String),
 }
 
 impl Options {

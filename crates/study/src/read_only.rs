@@ -1,4 +1,4 @@
-//! A complete study in a folder that cannot be written: nothing is to be done, and it is read.
+//! A complete study in a folder that cannot be written, or in which another study is to replace it: nothing is to be done, and it is read.
 
 use gyradius_campaign::{Runs, told, told_runs};
 
@@ -10,14 +10,14 @@ use crate::{
     subject::{Subject, Summarized},
 };
 
-/// The complete study of a scenario in a folder, which nobody can write, if it is there. What drives the outcome is there too,
+/// The complete study of a scenario in a folder, which is not to be written, if it is there. What drives the outcome is there too,
 /// if that was asked.
 pub(crate) fn complete_study<C: Subject>(
     scenario: &C,
     options: &Options,
 ) -> Result<Option<Study<C::Summary>>, StudyError> {
     let place = options.place(scenario.name());
-    // Whatever is wrong with what is there, the folder cannot be written first of all.
+    // Whatever is wrong with what is there, the folder is not to be written first of all.
     let Ok(there) = results::read::<C>(&place) else { return Ok(None) };
     let (there, summary) = there.into_parts();
     let is_it = there.to_toml() == scenario.to_toml()

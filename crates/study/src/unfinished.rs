@@ -17,8 +17,8 @@ pub fn begun_study(folder: &Path) -> Option<String> {
 pub fn replacement(folder: &Path) -> Option<String> {
     replacing(folder).map(|difference| {
         format!(
-            "runs of another study are in this folder too, which is to replace this one once all of them are done: {difference}. \
-             `gyradius study` of that one goes on with --force; of this one, --force drops those runs"
+            "the folder also holds runs of another study, which is to replace this one once they are all done: {difference}. To go on \
+             with the other study, run it again and pass --force; to drop its runs, run this one and pass --force"
         )
     })
 }

@@ -81,7 +81,7 @@ pub(crate) enum Problem {
     Other { what: &'static str, difference: String },
     #[error(
         "it holds the finished runs of another campaign that was not completed: {difference}; choose another \
-         folder with --out, or pass --force, which no --shard may have, to drop those runs"
+         folder with --out, or pass --force to drop those runs"
     )]
     Unfinished { difference: Difference },
     #[error(

@@ -1,6 +1,8 @@
 //! `gyradius report`: the report of a study made again, or of one whose runs are put together now.
 
-use gyradius_study::{Options, ResultsError, is_begun, put_together, replacement, write_report};
+use gyradius_study::{
+    Notice, Options, ResultsError, is_begun, put_together, replacement, write_report,
+};
 use std::{
     error::Error,
     path::{Path, PathBuf},
@@ -8,18 +10,14 @@ use std::{
 };
 
 use crate::program::{
-    args::ReportArgs,
-    output::{print, say},
-    replay::DEFAULT,
-    status::UNFINISHED,
-    study::notice,
+    args::ReportArgs, output::print, replay::DEFAULT, status::UNFINISHED, study::notice,
 };
 
 /// Runs the verb.
 pub(crate) fn report(arguments: &ReportArgs) -> Result<ExitCode, Box<dyn Error>> {
     let folder = arguments.study.as_deref().unwrap_or(Path::new(DEFAULT));
     if let Some(replacement) = replacement(folder) {
-        say(&format!("note: {replacement}"));
+        notice(Notice::Replacement(replacement));
     }
     if !is_begun(folder) {
         let written = write(folder, arguments)?;

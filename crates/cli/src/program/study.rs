@@ -167,6 +167,7 @@ pub(crate) fn notice(notice: Notice) {
             say(&format!("{runs} run{s} that had failed, done again: {failed} failed again"));
         }
         Notice::Unasked(unasked) => say(&format!("warning: {unasked}")),
+        Notice::Replacement(told) => say(&format!("note: {told}")),
         Notice::DriversLeft => say(
             "what drives the outcome is not found yet: `gyradius study` with the scenario finds it in this folder, which keeps all of \
              the runs until then",

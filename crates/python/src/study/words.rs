@@ -24,7 +24,8 @@ pub(super) fn in_keywords(error: &StudyError) -> String {
     }
 }
 
-fn translated(text: &str) -> String {
+/// With keyword arguments in the place of options.
+pub(super) fn translated(text: &str) -> String {
     let mut parts = text.split(" --");
     let mut translated = parts.next().unwrap_or_default().to_owned();
     for part in parts {
