@@ -67,35 +67,46 @@ impl Batch {
     /// Blocks of any streams.
     #[inline]
     pub(crate) fn of_each(blocks: impl Iterator<Item = Block>) -> Self {
-        let mut states = [[0; BATCH]; WORDS];
+        let mut made = Self([[0; BATCH]; WORDS]);
         let mut places = 0;
         for block in blocks.take(BATCH) {
-            for (row, word) in states.iter_mut().zip(block.state()) {
-                row[places] = word;
+            for (row, word) in made.0.iter_mut().zip(&block.state()) {
+                row[places] = *word;
             }
             places += 1;
         }
-        Self::mixed(states, places)
+        made.mix(places);
+        made
     }
 
     /// A block and those that follow it in its stream, up to a number of them.
     pub(crate) fn from(first: Block, places: usize) -> Self {
-        let mut states = first.state().map(|word| [word; BATCH]);
+        let mut made = Self(first.state().map(|word| [word; BATCH]));
         let number = |place| first.later(place as u64).number;
-        states[12] = std::array::from_fn(|place| number(place) as u32);
-        states[13] = std::array::from_fn(|place| (number(place) >> 32) as u32);
-        Self::mixed(states, places.min(BATCH))
+        made.0[12] = std::array::from_fn(|place| number(place) as u32);
+        made.0[13] = std::array::from_fn(|place| (number(place) >> 32) as u32);
+        made.mix(places.min(BATCH));
+        made
     }
 
     /// The words at a place.
     #[inline]
     pub(crate) fn words(&self, place: usize) -> [u32; WORDS] {
-        std::array::from_fn(|i| self.0[i][place])
+        let mut words = [0; WORDS];
+        self.give(place, &mut words);
+        words
     }
 
-    fn mixed(mut states: [[u32; BATCH]; WORDS], places: usize) -> Self {
-        pulp::Arch::new().dispatch(Mixing { states: &mut states, places });
-        Self(states)
+    /// Gives the words at a place.
+    #[inline]
+    pub(crate) fn give(&self, place: usize, words: &mut [u32; WORDS]) {
+        for (word, row) in words.iter_mut().zip(&self.0) {
+            *word = row[place];
+        }
+    }
+
+    fn mix(&mut self, places: usize) {
+        pulp::Arch::new().dispatch(Mixing { states: &mut self.0, places });
     }
 }
 

@@ -51,10 +51,13 @@ impl StreamRng {
     ) {
         let mut from = from.fuse();
         let mut first = [Block::default(); BATCH];
+        // One generator for all, for to make each anew takes as long as its words.
+        let mut opened = Self::new(Block::default());
         loop {
             let mut n = 0;
             for (first, block) in first[..BATCH / BLOCKS].iter_mut().zip(&mut from) {
-                (*first, n) = (block, n + 1);
+                *first = block;
+                n += 1;
             }
             let first = &first[..n];
             if n * BLOCKS < FEW {
@@ -63,11 +66,12 @@ impl StreamRng {
             let blocks = first.iter().flat_map(|block| (0..BLOCKS).map(|i| block.later(i as u64)));
             let made = Batch::of_each(blocks);
             for (i, block) in first.iter().enumerate() {
-                let mut opened = Self::new(block.later(BLOCKS as u64));
-                opened.used -= BLOCKS * WORDS;
+                opened.next = block.later(BLOCKS as u64);
+                opened.used = (AHEAD - BLOCKS) * WORDS;
+                opened.batch = None;
                 let (held, _) = opened.held[opened.used..].as_chunks_mut();
                 for (held, place) in held.iter_mut().zip(BLOCKS * i..) {
-                    *held = made.words(place);
+                    made.give(place, held);
                 }
                 with(&mut opened);
             }

@@ -19,7 +19,8 @@ use crate::{
 #[derive(Debug)]
 pub(crate) struct Draws {
     pub(crate) bodies: Vec<BodyLaw>,
-    streams: Vec<Streams>,
+    /// Of each number, and whether a vehicle or a flight draws it.
+    streams: Vec<(Streams, Each)>,
     pub(crate) groups: Groups,
 }
 
@@ -44,7 +45,8 @@ impl Draws {
         bodies: Vec<BodyLaw>,
         joint: &Joint<T>,
     ) -> Self {
-        let stream = |number: Number<'_>| Streams::new(seed, model, number.column);
+        let stream =
+            |number: Number<'_>| (Streams::new(seed, model, number.column), number.each);
         let (streams, groups) =
             (joint.numbers().map(stream).collect(), Groups::new(&bodies, joint));
         Self { bodies, streams, groups }
@@ -57,26 +59,19 @@ impl Draws {
     }
 
     /// The scores of so many runs that are steered, before they are correlated.
-    pub(crate) fn steered<T>(
-        &self,
-        joint: &Joint<T>,
-        drawing: &Drawing,
-        size: Size,
-        runs: u64,
-    ) -> Vec<Vec<f64>> {
+    pub(crate) fn steered(&self, drawing: &Drawing, size: Size, runs: u64) -> Vec<Vec<f64>> {
         let Some(steering) = drawing.steering() else { return Vec::new() };
         let of = |run| {
             let taken = self.taken(drawing, size, run);
-            steering.of(&self.scores(joint, taken))
+            steering.of(&self.scores(taken))
         };
         (0..runs).map(of).collect()
     }
 
     /// The independent scores of a run, in the order of what is dispersed: one from the stream of each, steered if the run is.
-    fn scores<T>(&self, joint: &Joint<T>, taken: Taken<'_>) -> Vec<f64> {
-        let numbers = self.streams.iter().zip(joint.numbers()).enumerate();
-        let each = numbers.map(|(place, (streams, number))| {
-            (streams, self.groups.stream_of(place, taken.mix, taken.stream(number.each)))
+    fn scores(&self, taken: Taken<'_>) -> Vec<f64> {
+        let each = self.streams.iter().enumerate().map(|(place, (streams, each))| {
+            (streams, self.groups.stream_of(place, taken.mix, taken.stream(*each)))
         });
         let mut scores = Vec::with_capacity(self.streams.len());
         Streams::each(each, 1, |rng| scores.push(StandardNormal.sample(rng)));
@@ -91,7 +86,7 @@ impl Draws {
     pub(crate) fn run<T>(&self, joint: &Joint<T>, taken: Taken<'_>) -> (Vec<f64>, Vec<ModelDraw>) {
         let Self { bodies, groups, .. } = self;
         let mix = taken.mix;
-        let mut scores = self.scores(joint, taken);
+        let mut scores = self.scores(taken);
         let inertia =
             |(i, body): (usize, &BodyLaw)| groups.inertia(i, mix, taken.stream(body.each), body);
         let mut draws: Vec<ModelDraw> = bodies.iter().enumerate().map(inertia).collect();
@@ -104,10 +99,10 @@ impl Draws {
                     break;
                 }
                 let (numbers, inertia) = again.get_or_insert_with(|| {
-                    let streams = self.streams.iter().zip(joint.numbers()).enumerate();
+                    let streams = self.streams.iter().enumerate();
                     let own = streams.filter(|(place, _)| kept.numbers.contains(place));
-                    let numbers = own.map(|(place, (streams, number))| {
-                        let first = groups.stream_of(place, mix, taken.stream(number.each));
+                    let numbers = own.map(|(place, (streams, each))| {
+                        let first = groups.stream_of(place, mix, taken.stream(*each));
                         (place, past_first_score(streams.run(first)))
                     });
                     let first = groups.inertia_stream(kept.body, mix, taken.stream(body.each));

@@ -149,8 +149,7 @@ impl<'a> Separations<'a> {
 
     /// The scores of so many runs, if they are steered.
     pub(crate) fn scores(&self, runs: u64) -> Vec<Vec<f64>> {
-        let (joint, size) = (&self.scenario.dispersions().joint, self.scenario.size());
-        self.model.draws.steered(joint, &self.drawing, size, runs)
+        self.model.draws.steered(&self.drawing, self.scenario.size(), runs)
     }
 
     /// What is drawn for a run, by column, with every digit.

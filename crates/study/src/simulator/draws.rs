@@ -72,7 +72,7 @@ impl SimulatorDraws<'_> {
 
     /// The scores of runs that are steered.
     pub(crate) fn steered(&self, runs: u64) -> Vec<Vec<f64>> {
-        self.draws.steered(self.dispersed, &self.drawing, self.size, runs)
+        self.draws.steered(&self.drawing, self.size, runs)
     }
 
     /// What a run takes.
