@@ -21,6 +21,11 @@ pub(crate) fn ln_sum(x: &[f64]) -> f64 {
     if sum == 1.0 { largest } else { largest + libm::log(sum) }
 }
 
+/// ln Π eˣ: −∞ where a factor is zero, whatever the others are.
+pub(crate) fn ln_product_of_exps(x: &[f64]) -> f64 {
+    if x.contains(&f64::NEG_INFINITY) { f64::NEG_INFINITY } else { x.iter().sum() }
+}
+
 /// ln Π x of numbers that are not negative, one logarithm for all where their product stays in range.
 pub(crate) fn ln_product(x: &[f64]) -> f64 {
     let product: f64 = x.iter().product();

@@ -55,6 +55,10 @@ macro_rules! laws {
                 match self { $(Self::$law(law) => law.cdf(x),)* }
             }
 
+            pub(super) fn share_above(&self, x: f64) -> f64 {
+                match self { $(Self::$law(law) => law.share_above(x),)* }
+            }
+
             pub(super) fn quantile(&self, p: f64) -> f64 {
                 match self { $(Self::$law(law) => law.quantile(p),)* }
             }
@@ -171,7 +175,7 @@ impl ScalarLaw {
         let below = self.cdf(x);
         // Nearer than that the difference has thirteen digits, and a score may have to be searched for.
         if !(below > 0.999) || self.ln_density(x).is_none() {
-            return 1.0 - below;
+            return if x.is_nan() { x } else { self.0.share_above(x) };
         }
         let z = self.score(x);
         if x >= self.at_score(f64::INFINITY) || z >= END { 0.0 } else { normal::above(z) }

@@ -2,7 +2,9 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
+use crate::gauss_legendre::panel;
 use crate::normal::above;
+use crate::scaled::root_of_square;
 
 /// The nearer bound may be this many standard deviations from the mean: beyond, the Gaussian holds
 /// 1e-9.
@@ -13,20 +15,10 @@ const END: f64 = 38.0;
 const MIN_WIDTH: f64 = 1e-290;
 /// The density relative to its largest value where quadrature ends is e to minus this.
 const NEGLIGIBLE: f64 = 60.0;
+/// So many times a share that is wanted is found by its logarithm.
+const FAR_OFF: f64 = 1e6;
 /// Up to this width one panel of the rule is exact to rounding, and differences of Φ are not.
 const NARROW: f64 = 0.5;
-
-/// Nodes and weights of Gauss and Legendre's rule of 16 points on [−1, 1], the positive half.
-pub(crate) const RULE: [[f64; 2]; 8] = [
-    [0.09501250983763744, 0.1894506104550685],
-    [0.2816035507792589, 0.18260341504492358],
-    [0.45801677765722737, 0.16915651939500254],
-    [0.6178762444026438, 0.14959598881657674],
-    [0.755404408355003, 0.12462897125553388],
-    [0.8656312023878318, 0.09515851168249279],
-    [0.9445750230732326, 0.062253523938647894],
-    [0.9894009349916499, 0.027152459411754096],
-];
 
 /// N(k̄, σ²) kept to [low, high].
 ///
@@ -61,8 +53,8 @@ pub(crate) enum WindowError {
 pub(crate) struct WindowMoments {
     /// E k.
     pub(crate) mean: f64,
-    /// Var k.
-    pub(crate) variance: f64,
+    /// √(Var k), which is a number where the variance is too small for one.
+    pub(crate) deviation: f64,
     /// E k².
     pub(crate) square_mean: f64,
     /// Var k².
@@ -201,14 +193,22 @@ impl TruncatedNormal {
             to - share * width
         };
         for _ in 0..200 {
-            let excess =
-                if rising { self.mass(from, v) - target } else { target - self.mass(v, to) };
+            let found = if rising { self.mass(from, v) } else { self.mass(v, to) };
+            let excess = if rising { found - target } else { target - found };
             if excess < 0.0 {
                 low = v;
             } else {
                 high = v;
             }
-            let newton = v - excess / libm::exp(self.ln_density(v));
+            let density = libm::exp(self.ln_density(v));
+            // Far out, where the share is many times what is wanted, Newton's iteration would come nearer by a factor e at
+            // each step: there it is done in the logarithm.
+            let newton = if found > FAR_OFF * target {
+                let step = found * libm::log(found / target) / density;
+                if rising { v - step } else { v + step }
+            } else {
+                v - excess / density
+            };
             let next = if newton > low && newton < high { newton } else { 0.5 * low + 0.5 * high };
             let done = (next - v).abs() <= 1e-15 * (width.min(1.0) + v.abs());
             v = next;
@@ -236,7 +236,8 @@ impl TruncatedNormal {
         if s == 0.0 {
             let square_mean = self.anchor * self.anchor;
             let mean = self.anchor;
-            return WindowMoments { mean, variance: 0.0, square_mean, square_variance: 0.0 };
+            let (deviation, square_variance) = (0.0, 0.0);
+            return WindowMoments { mean, deviation, square_mean, square_variance };
         }
         // Where offset · v + v²/2 = NEGLIGIBLE.
         let reach = 2.0 * NEGLIGIBLE / (self.offset + self.offset.hypot((2.0 * NEGLIGIBLE).sqrt()));
@@ -265,19 +266,10 @@ impl TruncatedNormal {
         }) / whole;
         WindowMoments {
             mean,
-            variance: s * s * variance,
+            deviation: root_of_square(s, |s| s * s * variance),
             square_mean: mean * mean + s * s * variance,
             square_variance: s * s * square,
         }
-    }
-}
-
-/// The nodes and weights of the rule on [from, to].
-fn panel(from: f64, to: f64, mut at: impl FnMut(f64, f64)) {
-    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-    for [node, weight] in RULE {
-        at(middle - half * node, half * weight);
-        at(middle + half * node, half * weight);
     }
 }
 

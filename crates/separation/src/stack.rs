@@ -115,7 +115,8 @@ impl Stack {
     pub fn set_body(&mut self, role: Role, parameter: BodyParameter, component: usize, value: f64) {
         let body = &mut self.bodies[role as usize];
         match parameter {
-            BodyParameter::Mass => body.mass = value,
+            BodyParameter::Mass if component == 0 => body.mass = value,
+            BodyParameter::Mass => {}
             BodyParameter::MassCentre => put(&mut body.centre, component, value),
             BodyParameter::Position => put(&mut body.state.position, component, value),
             BodyParameter::Velocity => put(&mut body.state.velocity, component, value),
@@ -375,12 +376,16 @@ mod tests {
                     for (i, value) in parameter.nominal(moving).into_iter().enumerate() {
                         stack.set_body(role, parameter, i, value);
                     }
+                    for none in parameter.nominal(moving).len()..9 {
+                        stack.set_body(role, parameter, none, 1e9);
+                    }
                 }
             }
             for &parameter in StackParameter::ALL {
                 for (i, value) in parameter.nominal(&()).into_iter().enumerate() {
                     stack.set_whole(parameter, i, value);
                 }
+                stack.set_whole(parameter, 3, 1e9);
             }
             for (k, spring) in nominal.springs().enumerate() {
                 for &parameter in SpringParameter::ALL {

@@ -45,8 +45,7 @@ impl Draws {
         bodies: Vec<BodyLaw>,
         joint: &Joint<T>,
     ) -> Self {
-        let stream =
-            |number: Number<'_>| (Streams::new(seed, model, number.column), number.each);
+        let stream = |number: Number<'_>| (Streams::new(seed, model, number.column), number.each);
         let (streams, groups) =
             (joint.numbers().map(stream).collect(), Groups::new(&bodies, joint));
         Self { bodies, streams, groups }

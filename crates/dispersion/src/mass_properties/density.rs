@@ -7,7 +7,7 @@ use std::f64::consts::LN_2;
 use super::law::{JointScalar, MassPropertiesLaw};
 use super::tensor::{Of, Principal};
 use crate::density_of_entries::{Bounded, ln_density_of_bounded};
-use crate::ln_sum::ln_sum;
+use crate::ln_sum::{ln_product_of_exps, ln_sum};
 use crate::{AttitudeMoments, InertiaLaw, ScalarLaw};
 
 /// A number that does not vary is itself to this share.
@@ -32,7 +32,7 @@ impl MassPropertiesLaw {
         let scalars = std::iter::once(mass).chain(centre);
         let mut sum = 0.0;
         for (i, (law, x)) in self.scalar_laws().zip(scalars).enumerate() {
-            sum += of_scalar(law, x)?;
+            sum = ln_product_of_exps(&[sum, of_scalar(law, x)?]);
             if law.deviation() > 0.0 {
                 scores[i] = self.score(i, law, x);
             }
@@ -41,10 +41,7 @@ impl MassPropertiesLaw {
         if !self.holds(body) {
             return Some(f64::NEG_INFINITY);
         }
-        if sum == f64::NEG_INFINITY {
-            return Some(sum);
-        }
-        Some(sum + inertia - libm::log(self.acceptance().0))
+        Some(ln_product_of_exps(&[sum, inertia, -libm::log(self.acceptance().0)]))
     }
 
     /// The score of a scalar if it is correlated with another.
@@ -69,7 +66,8 @@ impl MassPropertiesLaw {
                 let factor = self.shares().factor(mass);
                 let copula = self.copula().ln_copula(&scores)?;
                 let unit = InertiaMatrix::new(inertia.matrix() / factor).ok()?;
-                Some(model.ln_density(&unit)? - 6.0 * libm::log(factor) + copula)
+                let density = [model.ln_density(&unit)?, -6.0 * libm::log(factor), copula];
+                Some(ln_product_of_exps(&density))
             }
         }
     }
@@ -114,9 +112,7 @@ impl MassPropertiesLaw {
                     let folded = each.map(|law| law.map(|both| ln_sum(&both)));
                     PrincipalAxes::ORDERS.map(|(order, _)| {
                         let [a, b, c] = [0, 1, 2].map(|i| folded[i][order[i]]);
-                        // Where one is zero, so is the product, whatever the others are.
-                        let none = a.min(b).min(c) == f64::NEG_INFINITY;
-                        if none { f64::NEG_INFINITY } else { a + b + c + alone }
+                        ln_product_of_exps(&[a, b, c, alone])
                     })
                 };
                 // Nothing is there, even where a size is zero and the square's density infinite.
@@ -154,7 +150,8 @@ impl MassPropertiesLaw {
                     let x = if sign(i) == 0 { size } else { -size };
                     scores[SHAPE + i] = self.score(SHAPE + i, law, x);
                 }
-                *term = parts.iter().sum::<f64>() + self.copula().ln_copula(scores)?;
+                let [a, b, c] = parts;
+                *term = ln_product_of_exps(&[a, b, c, self.copula().ln_copula(scores)?]);
             }
             *sum = ln_sum(&terms);
         }

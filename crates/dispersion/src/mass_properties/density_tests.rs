@@ -1,7 +1,7 @@
 //! The density of the joint law, held against other densities by the mean of their ratio, and against draws.
 
-use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties, Region};
-use nalgebra::Vector3;
+use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties, Region, SecondMoments};
+use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
@@ -112,6 +112,42 @@ fn densities_have_the_integral_one() {
         let wrong = |body: &MassProperties| law.ln_density(body).unwrap() + std::f64::consts::LN_2;
         let (found, error) = ratio(mean, wide, wrong);
         assert!((found - 1.0).abs() > 4.0 * error, "law {i}: {found} ± {error}");
+    }
+}
+
+/// Laws with infinite densities at their bounds, at bodies on and beyond the bounds of other scalars: no draw can be there,
+/// however large the other factors are. On the bounds alone the density is infinite, and at no body is it no number.
+#[test]
+fn no_density_is_no_number() {
+    let beta = |low: f64, high: f64| ScalarLaw::beta(low, high, 0.5, 2.0).unwrap();
+    let weibull = ScalarLaw::weibull(0.4, 0.1, 0.5).unwrap();
+    let normal = |sigma| ScalarLaw::normal(0.0, sigma).unwrap();
+    let uniform = |low, high| ScalarLaw::uniform(low, high).unwrap();
+    let lengths = [uniform(0.2, 0.25), weibull, uniform(0.6, 0.7)];
+    let tensor = TensorLaw::gyration_lengths(lengths, gyradius_attitude::UniformAttitude);
+    let centre = [beta(0.0, 0.1), normal(0.01), normal(0.01)];
+    let plain = MassPropertiesLaw::new(uniform(10.0, 12.0), centre, tensor).unwrap();
+    use JointScalar::{Centre1, Mass, Shape2};
+    let tied = plain.clone().with_correlation(&[(Mass, Centre1, 0.5), (Mass, Shape2, 0.4)]);
+    for law in [plain, tied.unwrap()] {
+        for mass in [9.9, 10.0, 11.0, 12.0, 12.1] {
+            for x in [-0.01, 0.0, 0.05, 0.1, 0.2] {
+                for length in [0.1, 0.4, 0.45, 0.5] {
+                    let k = [0.22, length, 0.65].map(|l: f64| l * l * mass);
+                    let k = SecondMoments::new(k).unwrap();
+                    let inertia = Inertia::from_second_moments(k, &UnitQuaternion::identity());
+                    let inertia = inertia.unwrap();
+                    let body = MassProperties::new(mass, [x, 0.0, 0.0], inertia).unwrap();
+                    let found = law.ln_density(&body).unwrap();
+                    let can_be =
+                        (10.0..=12.0).contains(&mass) && (0.0..0.1).contains(&x) && length >= 0.4;
+                    assert!(!found.is_nan(), "{mass} {x} {length}");
+                    assert!(can_be || found == f64::NEG_INFINITY, "{mass} {x} {length}: {found}");
+                }
+            }
+        }
+        let mut rng = ChaCha8Rng::seed_from_u64(5);
+        assert!((0..100).all(|_| law.ln_density(&law.sample(&mut rng)).unwrap().is_finite()));
     }
 }
 

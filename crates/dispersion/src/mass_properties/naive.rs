@@ -1,7 +1,7 @@
 //! The ways in which mass properties are randomized in practice, of which most draw bodies that cannot be: rivals of the
 //! joint law, so that they can be compared and counted.
 
-use gyradius_inertia::{InertiaMatrix, MassProperties};
+use gyradius_inertia::{InertiaMatrix, MAX_ENTRY, MassProperties};
 use nalgebra::{Matrix3, Vector3};
 use rand::Rng;
 use rand_distr::Distribution;
@@ -11,8 +11,10 @@ use super::{MassPropertiesModel, TenParameters};
 use crate::ScalarLaw;
 use crate::roots::FAR;
 
-/// What a number may come to, so that no entry overflows.
+/// What a number may come to.
 const MAX_NUMBER: f64 = 1e30;
+/// What it may make of a mass or a moment, so that no entry is too large about other axes either.
+const MAX_PRODUCT: f64 = MAX_ENTRY / 16.0;
 
 /// How the inertia is changed. Each random number is drawn anew from the law of the rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,7 +97,14 @@ impl NaiveBody {
         rule: NaiveRule,
         law: ScalarLaw,
     ) -> Result<Self, NaiveBodyError> {
-        let law = checked(law)?;
+        let largest = nominal.inertia().matrix().amax();
+        let law = match rule {
+            NaiveRule::EntryNoise => checked(law)?,
+            NaiveRule::DiagonalFactors
+            | NaiveRule::EntryFactors
+            | NaiveRule::PrincipalFactors
+            | NaiveRule::ScaleAll => factor(law, largest)?,
+        };
         Ok(Self { nominal, rule, law, mass_factor: None, centre_offset_m: None })
     }
 
@@ -104,7 +113,7 @@ impl NaiveBody {
     /// # Errors
     /// The numbers could be too large.
     pub fn with_mass_factor(self, law: ScalarLaw) -> Result<Self, NaiveBodyError> {
-        Ok(Self { mass_factor: Some(checked(law)?), ..self })
+        Ok(Self { mass_factor: Some(factor(law, self.nominal.mass_kg())?), ..self })
     }
 
     /// The same with a mass centre that is moved along each body axis by a number of its own, in m.
@@ -158,15 +167,24 @@ crate::written!(
         centre_offset_m: Option<ScalarLaw> = body.centre_offset_m.clone(),
     },
     NaiveBody {
-        mass_factor: mass_factor.map(checked).transpose()?,
+        mass_factor: mass_factor.map(|law| factor(law, nominal.mass_kg())).transpose()?,
         centre_offset_m: centre_offset_m.map(checked).transpose()?,
         ..NaiveBody::new(nominal, rule, law)?
     }
 );
 
 fn checked(law: ScalarLaw) -> Result<ScalarLaw, NaiveBodyError> {
+    at_most(law, MAX_NUMBER)
+}
+
+/// Of numbers by which something of a size is multiplied.
+fn factor(law: ScalarLaw, size: f64) -> Result<ScalarLaw, NaiveBodyError> {
+    at_most(law, MAX_NUMBER.min(MAX_PRODUCT / size))
+}
+
+fn at_most(law: ScalarLaw, most: f64) -> Result<ScalarLaw, NaiveBodyError> {
     let value = law.reach(FAR);
-    if value <= MAX_NUMBER { Ok(law) } else { Err(NaiveBodyError::Reach { value }) }
+    if value <= most { Ok(law) } else { Err(NaiveBodyError::Reach { value, most }) }
 }
 
 impl MassPropertiesModel for NaiveBody {
@@ -198,9 +216,52 @@ impl MassPropertiesModel for NaiveBody {
 #[non_exhaustive]
 pub enum NaiveBodyError {
     /// Numbers could come out too large.
-    #[error("numbers of up to {value:e}: they must be at most {MAX_NUMBER:e}")]
+    #[error("numbers of up to {value:e}: they must be at most {most:e}")]
     Reach {
         /// How large.
         value: f64,
+        /// What is allowed, which is less where the body is very large or heavy.
+        most: f64,
     },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gyradius_inertia::Inertia;
+    use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+
+    /// Whatever the sizes: a law is refused, or all that it draws are numbers, and not the nominal body again.
+    #[test]
+    fn no_draw_is_too_large() {
+        let mut rng = ChaCha8Rng::seed_from_u64(4);
+        let mut taken = 0;
+        for power in (-280..=300).step_by(20) {
+            let size = 10_f64.powi(power);
+            let moments = [1.0, 0.9, 0.8].map(|k| k * size);
+            let inertia = InertiaMatrix::from_entries(moments, [0.0; 3]).unwrap();
+            let inertia = Inertia::try_from(inertia).unwrap();
+            let body = MassProperties::new(size, [0.0; 3], inertia).unwrap();
+            for rule in NaiveRule::ALL {
+                for most in [2.0, 1e10, 1e29] {
+                    let law = ScalarLaw::uniform(0.5 * most, most).unwrap();
+                    let heavy = NaiveBody::new(body, rule, ScalarLaw::normal(1.0, 0.0).unwrap())
+                        .unwrap()
+                        .with_mass_factor(law.clone());
+                    let drawn = heavy.map(|law| law.draw(&mut rng));
+                    assert!(drawn.is_ok_and(|ten| ten.mass_kg.is_finite()) || power > 260);
+                    let Ok(law) = NaiveBody::new(body, rule, law) else {
+                        assert!(power > 260, "{size:e} {most:e}");
+                        continue;
+                    };
+                    taken += 1;
+                    let ten = law.draw(&mut rng);
+                    let moved = ten.inertia.matrix() - body.inertia().matrix();
+                    let noise = rule == NaiveRule::EntryNoise && power > 0;
+                    assert!(noise || moved.amax() > 1e-3 * size, "{rule:?} {size:e} {most:e}");
+                }
+            }
+        }
+        assert!(taken > 300, "{taken}");
+    }
 }

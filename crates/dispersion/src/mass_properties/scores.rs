@@ -259,7 +259,7 @@ fn panels() -> Vec<(f64, f64)> {
     let density = |z: f64| libm::exp(-0.5 * z * z) / (2.0 * std::f64::consts::PI).sqrt();
     let nodes = (0..PANELS).flat_map(|i| {
         let middle = -12.0 + (2 * i + 1) as f64 * half;
-        crate::truncated_normal::RULE.iter().flat_map(move |[x, w]| {
+        crate::gauss_legendre::RULE.iter().flat_map(move |[x, w]| {
             [middle - half * x, middle + half * x].map(|z| (half * w * density(z), z))
         })
     });

@@ -10,6 +10,7 @@ use super::parameters::{Given, Key, Of, Value};
 use super::{MAX, ScalarLaw, ScalarLawError};
 use crate::incomplete_beta::IncompleteBeta;
 use crate::normal::{LN_ROOT_TAU, above, below, score};
+use crate::scaled::power_of_two;
 use crate::truncated_draw::Truncated;
 use crate::truncated_normal::WindowError;
 
@@ -38,6 +39,11 @@ pub(super) trait Law: Sized {
 
     /// The probability of a value of at most x.
     fn cdf(&self, x: f64) -> f64;
+
+    /// The probability of a value above x, as good as the one of those up to it is.
+    fn share_above(&self, x: f64) -> f64 {
+        1.0 - self.cdf(x)
+    }
 
     /// The smallest x with a probability of at least p, which is one, of a value of at most x.
     fn quantile(&self, p: f64) -> f64 {
@@ -150,10 +156,11 @@ impl ScalarLaw {
         Ok(Self::of(Normal { mean, deviation, variance, ln_deviation }))
     }
 
-    /// Mean and variance, if it is normal.
+    /// Mean and variance, if it is normal and its variance not too small for a number.
     #[must_use]
     pub fn as_normal(&self) -> Option<[f64; 2]> {
-        if let Kind::Normal(law) = &self.0 { Some([law.mean, law.variance]) } else { None }
+        let Kind::Normal(Normal { mean, deviation, variance, .. }) = self.0 else { return None };
+        (variance.is_normal() || deviation == 0.0).then_some([mean, variance])
     }
 }
 
@@ -369,7 +376,7 @@ impl Law for TruncatedNormal {
     }
 
     fn deviation(&self) -> f64 {
-        self.0.window.moments().variance.sqrt()
+        self.0.window.moments().deviation
     }
 
     fn square_moments(&self) -> (f64, f64) {
@@ -567,6 +574,9 @@ impl Law for Lognormal {
     }
 }
 
+/// Shares below it are computed from the end of a triangular law at which they are, though the mode be there.
+const SMALL: f64 = 1e-4;
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Triangular {
     low: f64,
@@ -589,6 +599,20 @@ impl ScalarLaw {
     }
 }
 
+impl Triangular {
+    /// How far from an end a share lies, from which the mode is as far as the first, and from there the other end as far as
+    /// the second.
+    fn from_end(&self, share: f64, [near, far]: [f64; 2]) -> f64 {
+        let width = self.high - self.low;
+        if share * width <= near {
+            return width.sqrt() * (share * near).sqrt();
+        }
+        // 1 − √(1 − part), which does not cancel so.
+        let part = (share * width - near) / far;
+        near + far * (part / (1.0 + (1.0 - part).sqrt()))
+    }
+}
+
 impl Law for Triangular {
     const NAME: &'static str = "triangular";
     const KEYS: &'static [Key] = &[LOW, MODE, HIGH];
@@ -603,12 +627,15 @@ impl Law for Triangular {
     }
 
     fn at_score(&self, z: f64) -> f64 {
-        let (width, left) = (self.high - self.low, self.mode - self.low);
+        let (left, right) = (self.mode - self.low, self.high - self.mode);
+        let (p, q) = (below(z), above(z));
         // From the end that is nearer, so that small shares keep their digits.
-        let x = if below(z) * width <= left {
-            self.low + width.sqrt() * (below(z) * left).sqrt()
+        let is_left =
+            if p < SMALL { true } else { q >= SMALL && p * (self.high - self.low) <= left };
+        let x = if is_left {
+            self.low + self.from_end(p, [left, right])
         } else {
-            self.high - width.sqrt() * (above(z) * (self.high - self.mode)).sqrt()
+            self.high - self.from_end(q, [right, left])
         };
         x.clamp(self.low, self.high)
     }
@@ -622,7 +649,13 @@ impl Law for Triangular {
         } else if x <= mode {
             (x - low) / (high - low) * ((x - low) / (mode - low))
         } else {
-            1.0 - (high - x) / (high - low) * ((high - x) / (high - mode))
+            let above = (high - x) / (high - low) * ((high - x) / (high - mode));
+            if above > 1.0 - SMALL {
+                let (width, part) = (high - low, (x - mode) / (high - mode));
+                (mode - low) / width + (x - mode) / width * (2.0 - part)
+            } else {
+                1.0 - above
+            }
         }
     }
 
@@ -647,8 +680,10 @@ impl Law for Triangular {
 
     fn deviation(&self) -> f64 {
         let (p, q) = (self.mode - self.low, self.high - self.mode);
+        let unit = power_of_two(p.max(q));
+        let (p, q) = (p / unit, q / unit);
         // A sum of terms that are not negative.
-        (p * p + p * q + q * q).sqrt() / (3.0 * SQRT_2)
+        unit * (p * p + p * q + q * q).sqrt() / (3.0 * SQRT_2)
     }
 
     fn square_moments(&self) -> (f64, f64) {
@@ -979,6 +1014,11 @@ impl Law for Samples {
         self.values.partition_point(|v| *v <= x) as f64 / self.values.len() as f64
     }
 
+    fn share_above(&self, x: f64) -> f64 {
+        let below = self.values.partition_point(|v| *v <= x);
+        (self.values.len() - below) as f64 / self.values.len() as f64
+    }
+
     fn quantile(&self, p: f64) -> f64 {
         let count = self.values.len() as f64;
         // The shares that `cdf` has, however they were rounded.
@@ -996,7 +1036,8 @@ impl Law for Samples {
     }
 
     fn deviation(&self) -> f64 {
-        mean_and_variance(self.values.iter().copied()).1.sqrt()
+        let unit = power_of_two(self.reach(0.0));
+        unit * mean_and_variance(self.values.iter().map(|x| x / unit)).1.sqrt()
     }
 
     fn square_moments(&self) -> (f64, f64) {
@@ -1067,8 +1108,19 @@ impl Law for Bernoulli {
         if x >= 1.0 { 1.0 } else { (1.0 - self.probability) * step(0.0, x) }
     }
 
+    fn share_above(&self, x: f64) -> f64 {
+        if x >= 1.0 {
+            0.0
+        } else if x >= 0.0 {
+            self.probability
+        } else {
+            1.0
+        }
+    }
+
     fn quantile(&self, p: f64) -> f64 {
-        f64::from(u8::from(p > 1.0 - self.probability))
+        let one = p > 1.0 - self.probability || (p == 1.0 && self.probability > 0.0);
+        f64::from(u8::from(one))
     }
 
     fn ln_density(&self, _: f64) -> Option<f64> {

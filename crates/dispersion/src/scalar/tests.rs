@@ -6,6 +6,7 @@ use crate::normal::below;
 use proptest::prelude::*;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 
+mod far;
 mod scores;
 
 const INF: f64 = f64::INFINITY;

@@ -10,6 +10,7 @@ use super::{
     scatter::{Body, Scatter},
     solve::Solution,
 };
+use crate::turns::FIXED;
 
 /// Stated and implied deviations that differ by no more than this share are the same.
 const AGREE: f64 = 0.03;
@@ -111,8 +112,8 @@ impl Context {
             let small = SMALL * three.into_iter().fold(0.0, f64::max) + 1e-8 * trace;
             for (entry, stated) in (first..).zip(three) {
                 let implied = deviations[entry];
-                let still = if entry < 3 && stated == 0.0 { STILL * trace } else { 0.0 };
-                let small = small.max(still);
+                let still = if entry < 3 { STILL } else { FIXED } * trace;
+                let small = if stated == 0.0 { small.max(still) } else { small };
                 if (implied - stated).abs() > (AGREE * stated).max(small) {
                     let because = if implied > stated {
                         self.why_more(model, entry, stated)

@@ -1,16 +1,18 @@
 //! Regions of space, and whether matter inside one can have given mass properties.
 
 mod about;
+mod error;
 #[cfg(feature = "serde")]
 mod file;
 mod hull;
 mod non_negative;
 
+pub use error::RegionError;
 use hull::Hull;
 use nalgebra::{Isometry3, Matrix3, Quaternion, SVector, Translation3, UnitQuaternion, Vector3};
 
 use crate::mass_properties::check_vector;
-use crate::{MassProperties, MassPropertiesError, RELATIVE_TOLERANCE};
+use crate::{MassProperties, RELATIVE_TOLERANCE};
 
 /// Points of a lattice along each edge of a box.
 const LATTICE: usize = 5;
@@ -167,7 +169,7 @@ impl Region {
     pub fn containment(&self, body: &MassProperties) -> Containment {
         match &self.0 {
             Kind::Ellipsoid { .. } => {
-                if self.room(body) >= -RELATIVE_TOLERANCE {
+                if self.room(body) >= -self.rounding(body) {
                     Containment::Possible
                 } else {
                     Containment::Impossible
@@ -175,7 +177,7 @@ impl Region {
             }
             Kind::Box { pose, half_sides } => {
                 let local = Local::of(body, pose);
-                if local.room_in_box(half_sides) < -RELATIVE_TOLERANCE {
+                if local.room_in_box(half_sides) < -self.rounding(body) {
                     return Containment::Impossible;
                 }
                 let inside = |x: &Vector3<f64>| (0..3).all(|i| x[i].abs() <= half_sides[i]);
@@ -262,6 +264,21 @@ impl Region {
                 hull.room(&local.centre, &local.spread)
             }
         }
+    }
+
+    /// What rounding may change the room of an ellipsoid or a box by: of coordinates far from the origin of the body axes it
+    /// is more, in parts of the thickness of the region.
+    fn rounding(&self, body: &MassProperties) -> f64 {
+        let (middle, thickness) = match &self.0 {
+            Kind::Ellipsoid { pose, semi_axes, .. } => (pose.translation.vector, semi_axes.min()),
+            Kind::Box { pose, half_sides } => (pose.translation.vector, half_sides.min()),
+            // It takes account of that itself.
+            Kind::Hull(_) => return RELATIVE_TOLERANCE,
+        };
+        let centre = body.mass_centre_m();
+        let moved = RELATIVE_TOLERANCE * (centre.norm() + middle.norm()) / thickness;
+        // Of (c + δ)², c being at most one where a room is near zero.
+        RELATIVE_TOLERANCE + moved * (2.0 + moved)
     }
 
     /// The points that a hull is looked at by, if it is one: of many those that lie farthest out in some direction.
@@ -439,56 +456,6 @@ fn lattice() -> impl Iterator<Item = Vector3<f64>> {
         let (x, y, z) = (i % LATTICE, i / LATTICE % LATTICE, i / LATTICE / LATTICE);
         Vector3::new(at(x), at(y), at(z))
     })
-}
-
-/// Why numbers are no region.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum RegionError {
-    /// A size is not positive, or out of range.
-    #[error("{field} {axis} = {value:?} m: it must lie in [1e-100, 1e100]")]
-    Size {
-        /// Which.
-        field: &'static str,
-        /// Axis, from 1.
-        axis: usize,
-        /// The value, m.
-        value: f64,
-    },
-    /// The middle is none.
-    #[error(transparent)]
-    Middle(#[from] MassPropertiesError),
-    /// A point is none.
-    #[error("point {point}: {error}")]
-    Point {
-        /// Point, from 0.
-        point: usize,
-        /// What is wrong with it.
-        error: MassPropertiesError,
-    },
-    /// A file says no shape.
-    #[error("there is no shape: it must have one of ellipsoid, box and hull")]
-    NoShape,
-    /// A file says two shapes.
-    #[error("it has {first} and {second}: it must have one of ellipsoid, box and hull")]
-    Shapes {
-        /// One of them.
-        first: &'static str,
-        /// Another one.
-        second: &'static str,
-    },
-    /// There are no points.
-    #[error("no points: a hull has at least one")]
-    Empty,
-    /// Points in a plane have no smallest ellipsoid.
-    #[error("all points lie in a plane, or nearly so: an ellipsoid about them has no volume")]
-    Flat,
-    /// The quaternion is not of unit length.
-    #[error("rotation of length {norm:?}: it must be 1")]
-    Rotation {
-        /// Its length.
-        norm: f64,
-    },
 }
 
 #[cfg(test)]

@@ -101,6 +101,23 @@ proptest! {
         prop_assert_eq!(scaled.decide(places, 1.0), Containment::Possible);
     }
 
+    /// Matter in a region far from the origin, its surface among it, is never called impossible.
+    #[test]
+    fn matter_far_away_is_never_impossible(half in any_sizes(), pose in any_pose(), masses in any_masses(), power in 0.0..6.0f64) {
+        let far = Isometry3 { translation: (pose.translation.vector * 10f64.powf(power)).into(), ..pose };
+        let solid = Region::solid_box([0.0; 3], half).unwrap().transformed(&far).unwrap();
+        let round = Region::ellipsoid([0.0; 3], half).unwrap().transformed(&far).unwrap();
+        let hull = Region::hull(&corners(&half, &far)).unwrap();
+        for (region, is_round) in [(solid, false), (hull, false), (round, true)] {
+            let inside = masses.iter().map(|(m, x)| {
+                let x = if is_round { x / x.norm().max(1.0) } else { *x };
+                (*m, (far * nalgebra::Point3::from(x.component_mul(&half))).coords)
+            });
+            let body = points(&inside.collect::<Vec<_>>());
+            prop_assert_ne!(region.containment(&body), Containment::Impossible, "{}", region.room(&body));
+        }
+    }
+
     /// Matter in a box or a hull is never called impossible, and is mostly found.
     #[test]
     fn matter_inside_is_never_impossible(half in any_sizes(), pose in any_pose(), masses in any_masses(), scale in 0.1..1.0f64) {

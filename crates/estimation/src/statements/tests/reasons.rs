@@ -65,7 +65,7 @@ fn what_keeps_a_product_from_more_is_what_it_would_gain_by() {
 fn what_moves_an_entry_more_moves_it_alone() {
     let mut rng = ChaCha8Rng::seed_from_u64(3);
     let mut told = [0; 2];
-    for round in 0..60 {
+    for round in 0..90 {
         let k = [0; 3].map(|_| rng.random_range(1.0..10.0));
         let about = UniformAttitude.sample(&mut rng);
         let nominal = Inertia::from_second_moments(SecondMoments::new(k).unwrap(), &about).unwrap();
@@ -75,7 +75,7 @@ fn what_moves_an_entry_more_moves_it_alone() {
         let axes = libm::pow(10.0, rng.random_range(-1.0..1.0));
         let statements = Statements {
             axes: Some(AxesStatement::each([axes; 3], 1.0).unwrap()),
-            products: products(if round % 2 == 0 { 0.0 } else { 1e-3 }, 1.0),
+            products: [Some(0.0), Some(1e-3), None][round % 3].and_then(|x| products(x, 1.0)),
             moments: percent(libm::pow(10.0, rng.random_range(-1.0..1.0))),
             ..Statements::default()
         };
@@ -86,9 +86,10 @@ fn what_moves_an_entry_more_moves_it_alone() {
             };
             let (roots, turns) = model.law().clone().into_parts();
             let mut deviation = |draw: &mut dyn FnMut(&mut ChaCha8Rng) -> Inertia| {
-                let draws: Vec<f64> = (0..2000).map(|_| draw(&mut rng).entries()[entry]).collect();
-                let mean = draws.iter().sum::<f64>() / 2000.0;
-                (draws.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / 1999.0).sqrt()
+                let draws: Vec<f64> =
+                    (0..20_000).map(|_| draw(&mut rng).entries()[entry]).collect();
+                let mean = draws.iter().sum::<f64>() / 20_000.0;
+                (draws.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / 19_999.0).sqrt()
             };
             let (alone, found) = match because {
                 MissedBecause::Axes { alone } => {
