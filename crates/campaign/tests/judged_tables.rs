@@ -19,6 +19,25 @@ fn bound() -> impl Strategy<Value = Bound> {
 }
 
 proptest! {
+    /// Names that hold marks which part columns elsewhere, quoted or not, are names, as the rows tell.
+    #[test]
+    fn marks_in_names_part_nothing(
+        separator in prop::sample::select(vec![',', ';', '\t']),
+        names in prop::collection::vec("[a-z]{1,3}([,;] [a-z]{1,3}){0,4}", 2..6),
+        quoted: bool,
+        rows in 1..5_usize,
+    ) {
+        let names: Vec<String> = names.iter().enumerate().map(|(i, name)| format!("{name} {i}")).collect();
+        // A separator in a name must be in quotes, and a name of another table's may be.
+        let quote = |name: &String| if quoted || name.contains(separator) { format!("\"{name}\"") } else { name.clone() };
+        let header: Vec<String> = names.iter().map(quote).collect();
+        let numbers: Vec<String> = (0..names.len()).map(|i| i.to_string()).collect();
+        let [header, numbers] = [header, numbers].map(|cells| cells.join(&separator.to_string()));
+        let text = format!("{header}\n{}", format!("{numbers}\n").repeat(rows));
+        let table = ForeignTable::read_csv("it.csv".as_ref(), text.as_bytes()).unwrap();
+        prop_assert_eq!(table.columns(), &names[..], "{}", text);
+    }
+
     /// A column alone is judged as it is beside a second column, whatever an empty cell is written as, in a file and handed out.
     #[test]
     fn one_column_is_judged_as_beside_another(

@@ -270,7 +270,11 @@ fn bad_tables_are_refused_with_their_row() {
     shell.write("unit.csv", &VARIANTS.replace("ixx", "ixx [furlong]"));
     assert!(shell.refused(&["fit", "unit.csv"]).contains("furlong"));
     shell.write("few.csv", &VARIANTS.lines().take(6).collect::<Vec<_>>().join("\n"));
-    assert!(shell.refused(&["fit", "few.csv"]).contains("5 samples: a fit needs at least 13"));
+    assert!(
+        shell
+            .refused(&["fit", "few.csv"])
+            .contains("number of samples is 5: a fit needs at least 13")
+    );
     shell.write("empty.csv", "");
     shell.refused(&["fit", "empty.csv"]);
     shell.write("header.csv", "ixx,iyy,izz\n");

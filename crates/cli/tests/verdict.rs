@@ -122,6 +122,13 @@ fn of_vehicles_the_first_flights_are_judged() {
             assert_eq!(said.contains("\n  vehicles     90 of 90 keep it"), told, "{said}");
             assert_eq!(said.contains("\n  vehicles "), told, "{said}");
         }
+        // A vehicle of which the first flight is missing is left out, with a word.
+        let rows = "run,vehicle,flight,y\n1,0,1,0.1\n3,1,0,0.2\n7,2,1,0.3\n9,3,0,0.3\n";
+        fs::write(scratch.path("begun.csv"), rows).unwrap();
+        let begun = scratch.run(&["verdict", "begun.csv", "--require", "y <= 5 in 50 % at 50 %"]);
+        assert!(String::from_utf8(begun.stdout).unwrap().contains("2 first flights"));
+        let warned = String::from_utf8(begun.stderr).unwrap();
+        assert!(warned.contains("flight 0, of 2 of 4 vehicles is not in the table"), "{warned}");
         // A table of these columns that lost the run.
         let rows: String = (0..450).map(|run| format!("{},{},1.0\n", run / 5, run % 5)).collect();
         fs::write(scratch.path("lost.csv"), format!("vehicle,flight,nutation_deg\n{rows}"))

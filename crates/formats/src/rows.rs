@@ -29,13 +29,16 @@ pub(crate) struct Rows<'a> {
 impl<'a> Rows<'a> {
     /// The rows of a text from its beginning, where the first of them tells the separator.
     pub(crate) fn new(text: &'a str) -> Self {
-        let first = text.lines().find(|line| !is_comment(line)).unwrap_or_default();
-        Self::at(text, 0, first)
+        let first = lines(text).find(|(_, line)| !is_comment(line)).unwrap_or_default();
+        Self { at: 0, ..Self::at(text, first.0, first.1) }
     }
 
     /// Those from an offset on, of which a line tells the separator.
     pub(crate) fn at(text: &'a str, at: usize, line: &str) -> Self {
-        Self { text, at, separator: separator(line) as u8 }
+        // What follows the line tells which of its marks part numbers as well.
+        let behind = text[at..].strip_prefix(line).unwrap_or_default();
+        let row = behind.lines().find(|line| !is_comment(line)).unwrap_or_default();
+        Self { text, at, separator: separator(line, row) as u8 }
     }
 
     /// The fields of the next row that is neither blank nor a comment, or the offset of a quote
@@ -141,8 +144,16 @@ fn is_numbered(line: &str) -> bool {
             && (first[digits..].trim().is_empty() || first[digits..].contains(char::is_alphabetic))
 }
 
-/// What there is most of in a header; a comma where nothing is.
-fn separator(header: &str) -> char {
-    let count = |separator: char| header.matches(separator).count();
-    [',', ';', '\t'].into_iter().max_by_key(|s| (count(*s), *s == ',')).unwrap_or(',')
+/// What there is as often in a header as in the row below it, or else most of in the header; a comma where nothing is. What
+/// stands in quotes does not count.
+fn separator(header: &str, row: &str) -> char {
+    let count = |line: &str, separator: char| -> usize {
+        line.split('"').step_by(2).map(|open| open.matches(separator).count()).sum()
+    };
+    let rank = |separator: &char| {
+        let there = count(header, *separator);
+        let agrees = there > 0 && there == count(row, *separator);
+        (agrees, there, *separator == ',')
+    };
+    [',', ';', '\t'].into_iter().max_by_key(rank).unwrap_or(',')
 }

@@ -341,3 +341,24 @@ fn deviations_in_other_words_are_never_zero_without_a_word() {
         assert_read(&with(&[other]));
     }
 }
+
+/// Marks that part columns in other tables are a part of a name in quotes, and, where rows tell, of one without.
+#[test]
+fn marks_in_a_heading_part_nothing() {
+    for separator in [",", ";", "\t"] {
+        for name in ["a,b,c,d,e,f,g,h,i,j,k,l,m,n", "rate, deg/s", "a;b"] {
+            for quoted in [true, name.contains(separator)] {
+                let heading = if quoted { format!("\"{name}\"") } else { name.to_owned() };
+                for first in [true, false] {
+                    let table = with(&[]).replace(',', separator);
+                    let lines = table.trim_end().lines().enumerate().map(|(i, line)| {
+                        let cell = if i == 0 { heading.as_str() } else { "7" };
+                        let [a, b] = if first { [cell, line] } else { [line, cell] };
+                        format!("{a}{separator}{b}\n")
+                    });
+                    assert_read(&lines.collect::<String>());
+                }
+            }
+        }
+    }
+}

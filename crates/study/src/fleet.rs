@@ -2,7 +2,7 @@
 
 use gyradius_campaign::{Column, Counting, ForeignError, ForeignTable, Kind};
 use serde::{Deserialize, Serialize};
-use std::fmt;
+use std::{borrow::Cow, collections::HashSet, fmt};
 
 /// Vehicles, each of which flies so many times.
 ///
@@ -62,13 +62,14 @@ impl Fleet {
 
     /// The table with the first flight of each vehicle counted, if it is a run table of vehicles and flights that a study wrote, or a copy of
     /// some of its columns and rows, and nothing says whether the flights of a vehicle have something in common: first flights have not.
-    /// With it, why all rows are counted all the same, where the table has vehicles and flights and does not tell which are the first.
+    /// With it, why all rows are counted all the same, where the table has vehicles and flights and does not tell which are the first,
+    /// or how many vehicles are left out, for their first flight is not in it.
     ///
     /// # Errors
     /// The table cannot be read, or its columns `run`, `vehicle` and `flight` are not those of a study.
     pub fn first_flights(
         table: ForeignTable,
-    ) -> Result<(ForeignTable, Option<&'static str>), ForeignError> {
+    ) -> Result<(ForeignTable, Option<Cow<'static, str>>), ForeignError> {
         const LOST: &str = "the table has the columns vehicle and flight, but not the column run of a study's run table: all rows are \
                             judged as runs that are independent of each other; with the column run, the first flight of each vehicle is \
                             judged";
@@ -82,7 +83,7 @@ impl Fleet {
             return Ok((table, None));
         }
         if !has(&names[0]) {
-            return Ok((table, Some(LOST)));
+            return Ok((table, Some(LOST.into())));
         }
         let mut seen = SeenFlights::default();
         let read = table.scan_beside(&[], &names, |columns| {
@@ -94,7 +95,8 @@ impl Fleet {
         match (read, seen.each()) {
             (Ok(()), Some(each)) => {
                 let counting = Counting::new(table.counting().looks(), each);
-                Ok((table.counted(counting), None))
+                let left_out = (each > 1).then(|| seen.left_out()).flatten();
+                Ok((table.counted(counting), left_out.map(Cow::Owned)))
             }
             (Ok(()), None) if table.is_run_table() => Err(table.refused(
                 "its columns \"run\", \"vehicle\" and \"flight\" do not belong together as in the run table of a study, where the run \
@@ -102,7 +104,7 @@ impl Fleet {
             )),
             (Err(error), _) if table.is_run_table() => Err(error),
             // Columns of another program that have the same names.
-            (Ok(()) | Err(_), _) => Ok((table, Some(OTHER))),
+            (Ok(()) | Err(_), _) => Ok((table, Some(OTHER.into()))),
         }
     }
 
@@ -135,6 +137,9 @@ struct SeenFlights {
     /// At least so many.
     least: u64,
     unclear: bool,
+    vehicles: HashSet<u64>,
+    /// Those of them whose first flight there is.
+    begun: HashSet<u64>,
 }
 
 impl SeenFlights {
@@ -148,6 +153,10 @@ impl SeenFlights {
         let whole = |place: usize| Column::run_named(row[place]?);
         let (run, vehicle, flight) = (whole(0)?, whole(1)?, whole(2)?);
         self.least = self.least.max(flight.checked_add(1)?);
+        self.vehicles.insert(vehicle);
+        if flight == 0 {
+            self.begun.insert(vehicle);
+        }
         let before = run.checked_sub(flight)?;
         if vehicle == 0 {
             return (before == 0).then_some(());
@@ -162,6 +171,18 @@ impl SeenFlights {
     fn each(&self) -> Option<u64> {
         let each = self.each.unwrap_or(self.least);
         (!self.unclear && self.least <= each).then_some(each)
+    }
+
+    /// That vehicles have no first flight here, if some have none.
+    fn left_out(&self) -> Option<String> {
+        let (all, begun) = (self.vehicles.len(), self.begun.len());
+        (begun < all).then(|| {
+            format!(
+                "the first flight, flight 0, of {} of {all} vehicles is not in the table: these vehicles are left out, for of each vehicle \
+                 its first flight is judged",
+                all - begun
+            )
+        })
     }
 }
 

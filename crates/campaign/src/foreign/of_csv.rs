@@ -25,18 +25,25 @@ pub(super) enum CsvText {
 }
 
 pub(super) fn csv_columns(path: &Path, text: &CsvText) -> Result<(u8, Vec<String>), ForeignError> {
+    // The names, and whether the first row has as many values, more than one.
     let head = |separator: u8| {
-        let names =
-            reader(path, text, (separator, 0))?.headers().map_err(|e| broken(path, &e))?.clone();
-        Ok::<_, ForeignError>(names.iter().map(str::to_owned).collect::<Vec<_>>())
+        let mut reader = reader(path, text, (separator, 0))?;
+        let names = reader.headers().map_err(|e| broken(path, &e))?.clone();
+        let agrees = names.len() > 1
+            && reader
+                .records()
+                .next()
+                .is_some_and(|row| row.is_ok_and(|row| row.len() == names.len()));
+        Ok::<_, ForeignError>((agrees, names.iter().map(str::to_owned).collect::<Vec<_>>()))
     };
     let mut best = (b',', head(b',')?);
     for separator in [b';', b'\t'] {
-        let names = head(separator)?;
-        if names.len() > best.1.len() {
-            best = (separator, names);
+        let (agrees, names) = head(separator)?;
+        if (agrees, names.len()) > (best.1.0, best.1.1.len()) {
+            best = (separator, (agrees, names));
         }
     }
+    let best = (best.0, best.1.1);
     if best.1.iter().all(String::is_empty) {
         let problem = "it is empty: the first line must have the names of the columns".to_owned();
         return Err(ForeignError { path: path.to_owned(), problem });

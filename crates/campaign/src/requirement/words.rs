@@ -16,7 +16,10 @@ impl<'a> Words<'a> {
 
     /// What is wrong at this place.
     pub(crate) fn wrong(&self, problem: &str) -> RequirementError {
-        let rest: String = self.rest.chars().take(20).collect();
+        let mut rest: String = self.rest.chars().take(20).collect();
+        if rest.len() < self.rest.len() {
+            rest.push('…');
+        }
         let at = if rest.is_empty() { "its end".to_owned() } else { format!("“{rest}”") };
         RequirementError::Text { text: self.text.to_owned(), at, problem: problem.to_owned() }
     }

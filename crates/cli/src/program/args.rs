@@ -661,6 +661,7 @@ pub(crate) struct CompareArgs {
         value_name = "P,P,...",
         value_delimiter = ',',
         default_value = "1,2,5,10,20,50",
+        value_parser = level,
         allow_hyphen_values = true
     )]
     pub(crate) levels: Vec<f64>,
@@ -789,11 +790,21 @@ fn whole(text: &str) -> Result<u64, String> {
     let grouped = text.split('_').all(|part| !part.is_empty());
     let float = || digits.parse().ok().and_then(gyradius_study::whole_number);
     digits.parse().ok().or_else(float).filter(|_| grouped).ok_or_else(|| {
-        let (most, certain) = (u64::MAX, 1_u64 << 53);
+        if grouped && digits.bytes().all(|byte| byte.is_ascii_digit()) {
+            return format!("it must be at most {}", u64::MAX);
+        }
+        let certain = 1_u64 << 53;
         format!(
-            "it must be a whole number from 0 to {most}, as 1000000, 1_000_000 or 1e6; from {certain} on it must be written \
+            "it must be a whole number and not negative, as 1000000, 1_000_000 or 1e6; from {certain} on it must be written \
              with all its digits"
         )
+    })
+}
+
+/// A level of a comparison in percent of the largest moment: 5 or 5%.
+fn level(text: &str) -> Result<f64, String> {
+    text.strip_suffix('%').unwrap_or(text).trim().parse().map_err(|_| {
+        "it must be a number, in percent of the largest moment, as 5 or 5%, and a comma parts it from the next".to_owned()
     })
 }
 

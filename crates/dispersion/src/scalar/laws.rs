@@ -602,7 +602,7 @@ impl ScalarLaw {
 impl Triangular {
     /// How far from an end a share lies, from which the mode is as far as the first, and from there the other end as far as
     /// the second.
-    fn from_end(&self, share: f64, [near, far]: [f64; 2]) -> f64 {
+    fn distance_from_end(&self, share: f64, [near, far]: [f64; 2]) -> f64 {
         let width = self.high - self.low;
         if share * width <= near {
             return width.sqrt() * (share * near).sqrt();
@@ -633,9 +633,9 @@ impl Law for Triangular {
         let is_left =
             if p < SMALL { true } else { q >= SMALL && p * (self.high - self.low) <= left };
         let x = if is_left {
-            self.low + self.from_end(p, [left, right])
+            self.low + self.distance_from_end(p, [left, right])
         } else {
-            self.high - self.from_end(q, [right, left])
+            self.high - self.distance_from_end(q, [right, left])
         };
         x.clamp(self.low, self.high)
     }

@@ -56,7 +56,9 @@ const SAME: f64 = 1e-3;
 #[non_exhaustive]
 pub enum PrincipalFitError {
     /// Too few samples.
-    #[error("{count} samples: a fit needs at least {NEEDED}, one for each parameter of the axes")]
+    #[error(
+        "the number of samples is {count}: a fit needs at least {NEEDED}, one for each parameter of the axes"
+    )]
     TooFew {
         /// How many were given.
         count: usize,
