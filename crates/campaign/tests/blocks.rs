@@ -426,7 +426,7 @@ fn another_campaign_is_refused() {
         let refused = message(&other, runs);
         assert!(refused.contains(said), "{refused}");
         assert_eq!(
-            begun(&place).as_deref(),
+            begun(&place).unwrap().as_deref(),
             Some("1 300"),
             "whoever goes on, goes on with what was begun"
         );

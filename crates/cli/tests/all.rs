@@ -19,6 +19,8 @@ mod kept;
 mod killed;
 #[cfg(unix)]
 mod output;
+#[cfg(unix)]
+mod permissions;
 mod rare;
 mod readme;
 mod report;

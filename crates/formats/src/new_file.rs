@@ -109,7 +109,16 @@ fn put(path: &Path, file: NamedTempFile, replaces: bool) -> io::Result<()> {
         file.persist_noclobber(path)?;
     }
     // Elsewhere than on Unix, folders cannot be opened, and their changes are in the system's journal.
-    if cfg!(unix) { File::open(folder(path))?.sync_all() } else { Ok(()) }
+    if cfg!(unix) { synced(File::open(folder(path))) } else { Ok(()) }
+}
+
+/// Brings the names in a folder to the disk. One that may be written but not read cannot be opened: its names reach the disk without being
+/// waited for.
+fn synced(folder: io::Result<File>) -> io::Result<()> {
+    match folder {
+        Err(error) if error.kind() == io::ErrorKind::PermissionDenied => Ok(()),
+        opened => opened?.sync_all(),
+    }
 }
 
 /// A file that is removed unless it is moved, with these permissions or those of any new file.
@@ -151,6 +160,14 @@ pub enum WriteError {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A folder that may be written but not read is none that cannot be written.
+    #[test]
+    fn a_folder_that_must_not_be_opened_is_no_error() {
+        let said = |kind: io::ErrorKind| synced(Err(kind.into())).map_err(|error| error.kind());
+        assert_eq!(said(io::ErrorKind::PermissionDenied), Ok(()));
+        assert_eq!(said(io::ErrorKind::NotFound), Err(io::ErrorKind::NotFound));
+    }
 
     /// The file that was asked for is named, and no other.
     #[test]

@@ -11,7 +11,9 @@ use gyradius_study::{
     AnyScenario, Judged, Notice, Options, Replay, ScenarioError, SimulatorReplay, StudyOutcome,
     Which, begun_study,
 };
-use pyo3::{Bound, Py, PyAny, PyResult, Python, pyclass, pymethods, types::PyDict};
+use pyo3::{
+    Bound, Py, PyAny, PyResult, Python, exceptions::PyOSError, pyclass, pymethods, types::PyDict,
+};
 use std::{
     path::{Path, PathBuf},
     sync::Mutex,
@@ -54,7 +56,8 @@ impl ScenarioCore {
         let is_folder = path.is_dir();
         let folder = if is_folder { path.clone() } else { folder_of(&path).to_owned() };
         let file = if is_folder { path.join("scenario.toml") } else { path };
-        let begun = if is_folder { begun_study(&folder) } else { None };
+        let begun = if is_folder { begun_study(&folder) } else { Ok(None) };
+        let begun = begun.map_err(|error| PyOSError::new_err(error.to_string()))?;
         let scenario = if begun.is_none() && function.is_none() && outputs.is_none() {
             AnyScenario::read(&file).map_err(|error| match error {
                 ScenarioError::Read { path, problem } => unreadable(&path, &problem),

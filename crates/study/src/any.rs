@@ -1,8 +1,8 @@
 //! A scenario of either kind, and what becomes of it: for programs that are given a file or a folder.
 
 use gyradius_campaign::{
-    Event, Forecast, Kept, Progress, Shard, SimulatorFunction, StoppingRule, Until, begun,
-    folder_of,
+    Event, FolderError, Forecast, Kept, Progress, Shard, SimulatorFunction, StoppingRule, Until,
+    begun, folder_of,
 };
 use serde::Serialize;
 use std::{
@@ -303,9 +303,11 @@ impl Status {
 }
 
 /// Whether a study was begun in a folder whose runs are not all done, or not put together.
-#[must_use]
-pub fn is_begun(folder: &Path) -> bool {
-    begun_study(folder).is_some()
+///
+/// # Errors
+/// Whether one was cannot be read.
+pub fn is_begun(folder: &Path) -> Result<bool, FolderError> {
+    Ok(begun_study(folder)?.is_some())
 }
 
 /// Puts together what is there of a study whose runs are not all done, in its folder: the study, if nothing is
@@ -318,7 +320,7 @@ pub fn put_together(
     options: &Options,
     say: &dyn Fn(Notice),
 ) -> Result<StudyOutcome, StudyError> {
-    let text = begun_study(folder).ok_or_else(|| StudyError::Absent {
+    let text = begun_study(folder)?.ok_or_else(|| StudyError::Absent {
         path: folder.to_owned(),
         problem: "it holds no study that was begun".to_owned(),
     })?;
@@ -347,7 +349,7 @@ impl SimulatorScenario {
     /// together yet may have it in no file.
     #[must_use]
     pub fn is_in(path: &Path) -> bool {
-        let text = read_file(&scenario_file(path)).ok().or_else(|| begun(path));
+        let text = read_file(&scenario_file(path)).ok().or_else(|| begun(path).ok()?);
         text.is_some_and(|text| is_of_simulator(&text))
     }
 }

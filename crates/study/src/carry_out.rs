@@ -103,13 +103,13 @@ pub(crate) fn carry_out<C: Subject>(
     };
     let place = options.place(scenario.name());
     let is_only_read = |error: &StudyError| {
-        matches!(error, StudyError::ReadOnly { .. }) || replacement(&place).is_some()
+        matches!(error, StudyError::ReadOnly { .. }) || matches!(replacement(&place), Ok(Some(_)))
     };
     match done {
         // There may be nothing to be written.
         Err(error) if !options.force && !options.retry_failed && is_only_read(&error) => {
             let study = complete_study(scenario, options)?.ok_or(error)?;
-            replacement(&place).into_iter().for_each(|told| say(Notice::Replacement(told)));
+            replacement(&place)?.into_iter().for_each(|told| say(Notice::Replacement(told)));
             Ok(study)
         }
         done => done,

@@ -130,10 +130,17 @@ pub(crate) fn read<C: Subject>(folder: &Path) -> Result<Results<C, C::Summary>, 
     restore(folder)?;
     let (file, written) = (folder.join("scenario.toml"), folder.join("summary.json"));
     let changed = |names: &[&str]| changed(folder, "study", names);
-    if !file.is_file() {
+    let is_there = |file: &Path| match fs::metadata(file) {
+        Err(error) if error.kind() == io::ErrorKind::PermissionDenied => {
+            let name = file.strip_prefix(folder).unwrap_or(file).display();
+            Err(problem(format!("{name} in it cannot be read: {error}")))
+        }
+        found => Ok(found.is_ok_and(|found| found.is_file())),
+    };
+    if !is_there(&file)? {
         return Err(problem(changed(&["scenario.toml"])?.unwrap_or_else(no_study)));
     }
-    if !written.is_file() {
+    if !is_there(&written)? {
         let again = "the command that made the study puts its runs together again";
         let gone = changed(&["summary.json"])?.map(|gone| format!("{gone}: {again}"));
         return Err(problem(gone.unwrap_or_else(no_study)));

@@ -1,11 +1,11 @@
 //! A share of a study's runs, and what of a study is there: for studies that many processes do.
 
 use gyradius_campaign::{
-    Block, Difference, Doing, Forecast, HIDDEN, Plan, Progress, Shard, Shared, Until, begun,
-    changed, missing_runs, run_missing, threads, told, why_unknown,
+    Block, Difference, Doing, Forecast, Plan, Progress, Shard, Shared, Until, begun, changed,
+    missing_runs, run_missing, threads, told, why_unknown,
 };
 use serde::Serialize;
-use std::{fs, io, ops::Range, path::Path};
+use std::{ops::Range, path::Path};
 
 use crate::{
     Notice, Options, ScenarioError, StudyError,
@@ -122,7 +122,7 @@ pub(crate) fn run_shard<C: Subject>(
 /// the last shard would decide for all.
 fn agree<C: Subject>(scenario: &C, folder: &Path) -> Result<(), StudyError> {
     let there = |text: String| C::resolved(&text).ok();
-    let (begun, done) = (begun(folder).and_then(there), || {
+    let (begun, done) = (begun(folder)?.and_then(there), || {
         read_file(&folder.join("scenario.toml")).ok().and_then(there)
     });
     let runs = begun.as_ref().map(C::runs).filter(|runs| *runs != scenario.runs());
@@ -142,14 +142,8 @@ fn agree<C: Subject>(scenario: &C, folder: &Path) -> Result<(), StudyError> {
 /// The text of the scenario of the study in a folder, as it was begun or done.
 pub(crate) fn text(folder: &Path) -> Result<String, StudyError> {
     let absent = |problem: String| StudyError::Absent { path: folder.to_owned(), problem };
-    if let Some(text) = begun_study(folder) {
+    if let Some(text) = begun_study(folder)? {
         return Ok(text);
-    }
-    if let Err(error) = fs::read_dir(folder.join(HIDDEN))
-        && error.kind() == io::ErrorKind::PermissionDenied
-    {
-        let problem = format!("{HIDDEN} in it, which tells of its runs, cannot be read: {error}");
-        return Err(absent(problem));
     }
     // Another text may be another scenario, or none.
     if let Some(problem) = changed(folder, "study", &["scenario.toml"])? {
@@ -195,7 +189,7 @@ impl Status {
         let blocks = told(folder, &contents, &identity)?;
         // Of a complete study whose blocks are lost, all runs are missing.
         if blocks.is_empty()
-            && begun_study(folder).is_none()
+            && begun_study(folder)?.is_none()
             && let Some(problem) = why_unknown(folder, &contents, &identity)?
         {
             return Err(StudyError::Absent { path: folder.to_owned(), problem });
@@ -212,7 +206,7 @@ impl Status {
             let gaps = missing_runs(ranges, scenario.runs(), u64::MAX);
             missing.extend(gaps.into_iter().map(|runs| Missing::new(model, runs)));
         }
-        let changed = match begun_study(folder) {
+        let changed = match begun_study(folder)? {
             // The scenario is this one.
             None => changed(folder, "study", &["summary.json"])?,
             // It is written when all is put together.
@@ -227,7 +221,7 @@ impl Status {
             runs_per_model: scenario.runs(),
             models,
             missing,
-            replacement: replacement(folder),
+            replacement: replacement(folder)?,
         })
     }
 }

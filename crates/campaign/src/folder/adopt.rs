@@ -1,7 +1,7 @@
 //! Blocks of a complete campaign put in their places: whole, or those rows and columns of them that are kept.
 
 use rayon::prelude::*;
-use std::{io::Write, path::PathBuf, sync::atomic::AtomicBool};
+use std::{path::PathBuf, sync::atomic::AtomicBool};
 
 use super::{
     Folder, FolderError, Problem,
@@ -96,7 +96,7 @@ impl Folder<'_> {
                 if block.has_file() {
                     block.sha256 = sha256(&content);
                     let name = Name::new(&block.name())?;
-                    self.journal.create(&self.hidden, name)?.write_all(&content)?;
+                    self.journal.write(&self.hidden, name, &content)?;
                 }
             }
         }
@@ -127,7 +127,7 @@ impl Shared {
 impl Reduced {
     fn find((hidden, what): (&Hidden, &str), identity: &Identity) -> Result<Option<Self>, Problem> {
         let place = hidden.place().to_owned();
-        let (kept, blocks) = published(&place, &hidden.record(what)?.0, identity);
+        let (kept, blocks) = published(&place, &hidden.record(what)?.0, identity)?;
         Ok((!kept.is_all()).then_some(Self { kept, place, blocks }))
     }
 

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::{
     collections::BTreeSet,
     fs::{self, File, OpenOptions, TryLockError},
-    io::{self, Write},
+    io,
     path::{Path, PathBuf},
 };
 
@@ -14,6 +14,7 @@ use super::{
     hidden::Hidden,
     manifest::{AGAIN, Block},
     name::{HIDDEN, said},
+    refusal::Refusal,
 };
 use crate::{identity::Identity, shard::Shard};
 
@@ -74,12 +75,11 @@ impl Area {
 
     /// What the campaign is, if one was begun.
     pub(super) fn identity(&self) -> Result<Option<Identity>, Problem> {
-        match fs::symlink_metadata(&self.0) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-            Err(error) => return Err(error.into()),
-            Ok(metadata) if metadata.is_dir() => {}
-            Ok(metadata) => {
-                let (name, is) = (self.name(), said(metadata.file_type()));
+        match disk::found(&self.0)? {
+            None => return Ok(None),
+            Some(found) if found.is_dir() => {}
+            Some(found) => {
+                let (name, is) = (self.name(), said(found.file_type()));
                 return Err(Problem::Kind { name, is, should: "folder" });
             }
         }
@@ -87,7 +87,7 @@ impl Area {
         let unknown = |problem: String| Problem::Unknown { name, problem };
         match disk::read(&self.0.join(IDENTITY)) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-            Err(error) => Err(unknown(error.to_string())),
+            Err(error) => Err(error.into()),
             Ok(text) => serde_json::from_slice(&text).map(Some).map_err(|e| unknown(e.to_string())),
         }
     }
@@ -135,16 +135,18 @@ impl Area {
     fn replace(&self, name: &str, text: &str) -> Result<(), Problem> {
         let part = self.0.join(format!("{name}{PART}"));
         disk::remove_file(&part)?;
-        disk::create_file(&part)?.write_all(text.as_bytes())?;
+        disk::write_new(&part, text)?;
         disk::sync_file(&part)?;
         Ok(disk::replace_file(&part, &self.0.join(name))?)
     }
 
     /// The text that tells how the campaign was begun, if it was.
-    pub(super) fn mark(&self) -> Option<String> {
+    pub(super) fn mark(&self) -> Result<Option<String>, Refusal> {
         let path = self.0.join(MARK);
-        let is_file = fs::symlink_metadata(&path).is_ok_and(|found| found.is_file());
-        is_file.then(|| fs::read_to_string(path).ok())?
+        if !disk::found(&path)?.is_some_and(|found| found.is_file()) {
+            return Ok(None);
+        }
+        Ok(String::from_utf8(disk::read(&path)?).ok())
     }
 
     /// Tells that a rule looks at the runs.
@@ -161,33 +163,29 @@ impl Area {
     pub(super) fn record(&self, shard: Option<Shard>) -> Result<(PathBuf, File), Problem> {
         let name = shard.map_or_else(|| RECORD.to_owned(), |s| format!("{RECORD}-{}", s.name()));
         let path = self.0.join(&name);
-        if let Ok(found) = fs::symlink_metadata(&path)
+        if let Some(found) = disk::found(&path)?
             && !found.is_file()
         {
             let (name, is) = (format!("{}/{name}", self.name()), said(found.file_type()));
             return Err(Problem::Kind { name, is, should: "file" });
         }
-        let record = OpenOptions::new().append(true).create(true).open(&path)?;
+        let record = OpenOptions::new().append(true).create(true).open(&path);
+        let record = record.map_err(Refusal::write(&path))?;
         if shard.is_some() {
             match record.try_lock() {
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => return Err(Problem::Busy),
-                Err(TryLockError::Error(error)) => return Err(error.into()),
+                Err(TryLockError::Error(error)) => return Err(Refusal::write(&path)(error).into()),
             }
         }
         Ok((path, record))
     }
 
     /// The names of all records.
-    fn records(&self) -> io::Result<Vec<PathBuf>> {
-        let entries = match fs::read_dir(&self.0) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
-            other => other?,
-        };
+    fn records(&self) -> Result<Vec<PathBuf>, Refusal> {
         let mut records = Vec::new();
-        for entry in entries {
-            let entry = entry?;
-            if is_record(&entry.file_name().to_string_lossy()) && entry.file_type()?.is_file() {
+        for entry in disk::entries(&self.0)? {
+            if is_record(&entry.file_name().to_string_lossy()) && disk::kind(&entry)?.is_file() {
                 records.push(entry.path());
             }
         }
@@ -201,7 +199,8 @@ impl Area {
         let Some(campaign) = self.identity()?.map(|identity| identity.word()) else {
             return Ok(Vec::new());
         };
-        let texts = self.records()?.into_iter().map(fs::read).collect::<io::Result<Vec<_>>>()?;
+        let records = self.records()?;
+        let texts = records.iter().map(|path| disk::read(path)).collect::<Result<Vec<_>, _>>()?;
         let mut seen = BTreeSet::new();
         let lines = texts.iter().flat_map(|text| text.split(|byte| *byte == b'\n'));
         let lines = lines.filter(|line| !line.is_empty() && seen.insert(*line));
@@ -212,7 +211,7 @@ impl Area {
     }
 
     /// Whether shards have left records.
-    pub(super) fn has_shards(&self) -> io::Result<bool> {
+    pub(super) fn has_shards(&self) -> Result<bool, Refusal> {
         Ok(self.records()?.iter().any(|path| !path.ends_with(RECORD)))
     }
 
@@ -227,11 +226,11 @@ impl Area {
             disk::remove_file(record)?;
         }
         disk::sync_folder(&self.0)?;
-        Ok(OpenOptions::new().append(true).open(&path)?)
+        Ok(OpenOptions::new().append(true).open(&path).map_err(Refusal::write(&path))?)
     }
 
     /// Removes this program's files of the campaign, and the folders if nothing else is in them.
-    pub(super) fn clear(&self) -> io::Result<()> {
+    pub(super) fn clear(&self) -> Result<(), Refusal> {
         let folder = &self.0;
         let own = |name: &str| {
             let (stem, end) = name.split_once('.').unwrap_or((name, ""));
@@ -241,17 +240,11 @@ impl Area {
             let again = end.starts_with(AGAIN) && end.ends_with(".parquet");
             numbers && (again || matches!(end, "parquet" | "part") || end.ends_with(PART))
         };
-        let entries = match fs::read_dir(folder) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
-            other => other?,
-        };
         let mut files = Vec::new();
-        for entry in entries {
-            let entry = entry?;
-            if entry.file_type()?.is_dir() {
-                for block in fs::read_dir(entry.path())? {
-                    let block = block?;
-                    if own(&block.file_name().to_string_lossy()) && block.file_type()?.is_file() {
+        for entry in disk::entries(folder)? {
+            if disk::kind(&entry)?.is_dir() {
+                for block in disk::entries(&entry.path())? {
+                    if own(&block.file_name().to_string_lossy()) && disk::kind(&block)?.is_file() {
                         disk::remove_file(&block.path())?;
                     }
                 }

@@ -10,7 +10,7 @@ use sha2::{Digest, Sha256};
 use std::{
     cmp::Reverse,
     collections::{BTreeMap, BTreeSet},
-    fs::{self, File},
+    fs::File,
     io::{self, BufWriter, Write},
     ops::Range,
     path::{Path, PathBuf},
@@ -24,8 +24,9 @@ use super::{
     hidden::{Hidden, be_folder, real_folder},
     manifest::Block,
     name::{Found, HIDDEN, Name, look},
+    refusal::Refusal,
     shared::Shared,
-    told::{missing_runs, published},
+    told::{is_whole, missing_runs, published},
     unobstructed,
 };
 use crate::{
@@ -167,7 +168,7 @@ impl Blocks {
         let mut blocks = Vec::new();
         if let Some(what) = what {
             let record = hidden.record(what)?.0;
-            let (kept, there) = published(&opened.place, &record, &opened.identity);
+            let (kept, there) = published(&opened.place, &record, &opened.identity)?;
             blocks = there;
             if !kept.is_all() {
                 blocks.clear();
@@ -199,9 +200,9 @@ impl Blocks {
             let name = || folder.strip_prefix(&self.place).unwrap_or(&folder).display().to_string();
             real_folder(&folder, name)?;
         }
-        let states: Vec<io::Result<Option<String>>> =
+        let states: Vec<Result<Option<String>, Refusal>> =
             threads.install(|| blocks.par_iter().map(|block| self.fault(block)).collect());
-        let states = states.into_iter().collect::<io::Result<Vec<_>>>()?;
+        let states = states.into_iter().collect::<Result<Vec<_>, _>>()?;
         let all = || blocks.iter().zip(&states);
         // Two shards may have done the same block, and one of their lines may tell of another content.
         let good: BTreeSet<PathBuf> =
@@ -211,7 +212,7 @@ impl Blocks {
             let path = self.path(block);
             if let Some(fault) = fault.as_ref().filter(|_| !good.contains(&path)) {
                 // Other shards may be at it.
-                if self.shard.is_none() && fs::symlink_metadata(&path).is_ok() {
+                if self.shard.is_none() && disk::found(&path)?.is_some() {
                     put_aside(&path, aside, block)?;
                 }
                 damaged.push((block, format!("{} {fault}", block.name())));
@@ -273,14 +274,13 @@ impl Blocks {
     }
 
     /// What is wrong with a block, if anything is.
-    fn fault(&self, block: &Block) -> io::Result<Option<String>> {
+    fn fault(&self, block: &Block) -> Result<Option<String>, Refusal> {
         let (root, name) = self.area.place_of(block, &self.place);
         let Ok(name) = Name::new(&name) else {
             return Ok(Some("has no name of a block".to_owned()));
         };
         if self.shard.is_some() {
-            let found = fs::symlink_metadata(name.below(root));
-            let whole = found.is_ok_and(|found| found.is_file() && found.len() == block.bytes);
+            let whole = is_whole(&name.below(root), block)?;
             return Ok((!whole).then(|| "is gone or not of its length".to_owned()));
         }
         Ok(match look(root, &name)? {
@@ -473,8 +473,8 @@ fn reach(ends: &Ends<'_>, model: &str, run: u64) -> u64 {
 fn put_aside(path: &Path, damaged: &Path, block: &Block) -> Result<(), Problem> {
     be_folder(damaged, || format!("{HIDDEN}/{DAMAGED}"))?;
     let name = |i: u32| damaged.join(format!("{}-{}.{i}", block.model, block.file()));
-    let free = (1..).map(name).find(|name| fs::symlink_metadata(name).is_err());
-    Ok(free.map_or(Ok(()), |free| disk::move_file(path, &free))?)
+    let free = (1..).map(name).find(|name| disk::is_free(name));
+    Ok(free.map_or(Ok(()), |free| disk::move_away(path, &free))?)
 }
 
 /// Counts and hashes what is written.

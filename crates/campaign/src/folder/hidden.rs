@@ -10,6 +10,7 @@ use super::{
     Problem, disk,
     name::{HIDDEN, Name, said},
     record::Record,
+    refusal::Refusal,
 };
 use crate::hash::sha256;
 
@@ -29,8 +30,8 @@ pub(super) struct Hidden {
 
 impl Hidden {
     /// Whether a folder has something of that name, whatever it is.
-    pub(super) fn is_in(place: &Path) -> bool {
-        fs::symlink_metadata(place.join(HIDDEN)).is_ok()
+    pub(super) fn is_in(place: &Path) -> Result<bool, Refusal> {
+        Ok(disk::found(&place.join(HIDDEN))?.is_some())
     }
 
     /// Makes it if need be and locks it. The lock is a file that is empty for ever: it is made if there
@@ -50,7 +51,7 @@ impl Hidden {
     ) -> Result<Self, Problem> {
         match Self::taken_by(place, take) {
             // Who held it has just removed it with the folder.
-            Err(Problem::Io(error)) if error.kind() == io::ErrorKind::NotFound => {
+            Err(Problem::Refused(error)) if error.kind() == io::ErrorKind::NotFound => {
                 Err(Problem::Busy)
             }
             other => other,
@@ -62,7 +63,7 @@ impl Hidden {
         take: fn(&File) -> Result<(), TryLockError>,
     ) -> Result<Self, Problem> {
         // The folder that is meant now stays meant, whatever becomes of links on the way to it.
-        let place = fs::canonicalize(place)?;
+        let place = fs::canonicalize(place).map_err(Refusal::read(place))?;
         let made = match disk::create_folder(&place.join(HIDDEN)) {
             Ok(()) => true,
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => false,
@@ -80,7 +81,7 @@ impl Hidden {
             Ok(()) if is_at(&lock, &path)? => Ok(Self { place, lock, made, made_lock }),
             // Who held it has just removed it with the folder.
             Ok(()) | Err(TryLockError::WouldBlock) => Err(Problem::Busy),
-            Err(TryLockError::Error(error)) => Err(error.into()),
+            Err(TryLockError::Error(error)) => Err(Refusal::write(&path)(error).into()),
         }
     }
 
@@ -109,16 +110,13 @@ impl Hidden {
         let name = Self::record_name(what);
         let path = name.below(place);
         let unknown = |problem: String| Problem::Unknown { name: name.to_string(), problem };
-        match fs::symlink_metadata(&path) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                return Ok((Record::default(), None));
-            }
-            Err(error) => return Err(error.into()),
-            Ok(metadata) if metadata.is_file() => {}
-            Ok(metadata) => return Err(unknown(format!("a {}", said(metadata.file_type())))),
+        match disk::found(&path)? {
+            None => return Ok((Record::default(), None)),
+            Some(found) if found.is_file() => {}
+            Some(found) => return Err(unknown(format!("a {}", said(found.file_type())))),
         }
-        let text = fs::read_to_string(&path).map_err(|error| unknown(error.to_string()))?;
-        let record = serde_json::from_str(&text).map_err(|error| unknown(error.to_string()))?;
+        let text = disk::read(&path)?;
+        let record = serde_json::from_slice(&text).map_err(|error| unknown(error.to_string()))?;
         Ok((record, Some(sha256(&text))))
     }
 
@@ -155,32 +153,29 @@ impl Drop for Hidden {
 
 /// Opens a lock that is there.
 fn open_lock(path: &Path) -> Result<File, Problem> {
-    let metadata = fs::symlink_metadata(path)?;
+    let metadata = fs::symlink_metadata(path).map_err(Refusal::read(path))?;
     if !metadata.is_file() || metadata.len() > 0 {
         let name = format!("{HIDDEN}/lock");
         let problem = "it should be an empty file".to_owned();
         return Err(Problem::Unknown { name, problem });
     }
     // Some network file systems lock only what is open for writing. Nothing is written.
-    Ok(OpenOptions::new().read(true).write(true).open(path)?)
+    Ok(OpenOptions::new().read(true).write(true).open(path).map_err(Refusal::write(path))?)
 }
 
 /// Whether a file is still the one at its path.
 #[cfg(unix)]
-fn is_at(file: &File, path: &Path) -> io::Result<bool> {
+fn is_at(file: &File, path: &Path) -> Result<bool, Refusal> {
     use std::os::unix::fs::MetadataExt;
-    let file = file.metadata()?;
-    match fs::symlink_metadata(path) {
-        Ok(there) => Ok((file.dev(), file.ino()) == (there.dev(), there.ino())),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
-        Err(error) => Err(error),
-    }
+    let file = file.metadata().map_err(Refusal::read(path))?;
+    let there = disk::found(path)?;
+    Ok(there.is_some_and(|there| (file.dev(), file.ino()) == (there.dev(), there.ino())))
 }
 
 /// Whether a file is still the one at its path: elsewhere than on Unix, an open file stays.
 #[cfg(not(unix))]
-fn is_at(_file: &File, path: &Path) -> io::Result<bool> {
-    path.try_exists()
+fn is_at(_file: &File, path: &Path) -> Result<bool, Refusal> {
+    Ok(disk::found(path)?.is_some())
 }
 
 /// Makes a folder, unless one is there. A link to one is none: nothing is written through it.
@@ -197,11 +192,11 @@ pub(super) fn be_folder(path: &Path, name: impl FnOnce() -> String) -> Result<()
 
 /// That nothing but a folder is there, if anything is: what stands behind a link is not the program's.
 pub(super) fn real_folder(path: &Path, name: impl FnOnce() -> String) -> Result<(), Problem> {
-    match fs::symlink_metadata(path) {
-        Ok(found) if !found.is_dir() => {
+    match disk::found(path)? {
+        Some(found) if !found.is_dir() => {
             let is = said(found.file_type());
             Err(Problem::Kind { name: name(), is, should: "folder" })
         }
-        Ok(_) | Err(_) => Ok(()),
+        Some(_) | None => Ok(()),
     }
 }

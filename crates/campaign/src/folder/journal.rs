@@ -8,8 +8,7 @@
 use serde::{Deserialize, Serialize};
 use std::{
     collections::{BTreeMap, BTreeSet},
-    fs::{self, File, OpenOptions},
-    io,
+    fs::{File, OpenOptions},
     path::{Path, PathBuf},
 };
 
@@ -18,8 +17,9 @@ use super::{
     hidden::{Hidden, be_folder},
     name::{Found, HIDDEN, Name, look, said},
     record::Record,
+    refusal::Refusal,
 };
-use crate::hash::{sha256, sha256_of_file};
+use crate::hash::sha256;
 
 const JOURNAL: &str = "journal";
 const DRAFT: &str = "draft";
@@ -96,7 +96,7 @@ impl Journal {
     /// Begins a draft.
     pub(super) fn start(hidden: &Hidden) -> Result<Self, Problem> {
         for name in [DRAFT, ASIDE] {
-            if fs::symlink_metadata(hidden.join(name)).is_ok() {
+            if disk::found(&hidden.join(name))?.is_some() {
                 let name = format!("{HIDDEN}/{name}");
                 let problem = "no journal tells of it".to_owned();
                 return Err(Problem::Unknown { name, problem });
@@ -115,7 +115,7 @@ impl Journal {
     fn left(hidden: &Hidden) -> Result<Option<Self>, Problem> {
         let Some(lines) = read(hidden.place())? else { return Ok(None) };
         let path = hidden.join(JOURNAL);
-        let file = OpenOptions::new().append(true).open(&path)?;
+        let file = OpenOptions::new().append(true).open(&path).map_err(Refusal::write(&path))?;
         let mut journal = Self::of(path, file);
         for line in lines {
             match line {
@@ -136,6 +136,16 @@ impl Journal {
     /// Makes a file in the draft.
     pub(super) fn create(&mut self, hidden: &Hidden, name: Name) -> Result<File, Problem> {
         Ok(disk::create_file(&self.announce(hidden, name)?)?)
+    }
+
+    /// Writes a file of the draft.
+    pub(super) fn write(
+        &mut self,
+        hidden: &Hidden,
+        name: Name,
+        content: impl AsRef<[u8]>,
+    ) -> Result<(), Problem> {
+        Ok(disk::write_new(&self.announce(hidden, name)?, content)?)
     }
 
     /// Links a file that is whole, and has a hash, into the draft; copies it where files cannot be linked.
@@ -166,13 +176,14 @@ impl Journal {
     pub(super) fn written(&self, hidden: &Hidden, old: &Record) -> Result<Record, Problem> {
         let (mut files, mut folders) = (BTreeMap::new(), BTreeSet::new());
         for name in &self.drafts {
-            let known = self.hashes.get(name).cloned();
-            let hash =
-                known.map_or_else(|| sha256_of_file(&name.below(&hidden.join(DRAFT))), Ok)?;
+            let hash = match self.hashes.get(name) {
+                Some(known) => known.clone(),
+                None => disk::hash(&name.below(&hidden.join(DRAFT)))?,
+            };
             files.insert(name.clone(), hash);
             for above in name.folders() {
-                let there = fs::symlink_metadata(above.below(hidden.place())).is_ok();
-                if !there || old.folders().contains(&above) {
+                let there = disk::found(&above.below(hidden.place()))?;
+                if there.is_none() || old.folders().contains(&above) {
                     folders.insert(above);
                 }
             }
@@ -279,13 +290,12 @@ fn read(place: &Path) -> Result<Option<Vec<Line>>, Problem> {
     let name = format!("{HIDDEN}/{JOURNAL}");
     let unknown = |problem: String| Problem::Unknown { name: name.clone(), problem };
     let path = place.join(&name);
-    match fs::symlink_metadata(&path) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(error.into()),
-        Ok(metadata) if metadata.is_file() => {}
-        Ok(metadata) => return Err(unknown(format!("a {}", said(metadata.file_type())))),
+    match disk::found(&path)? {
+        None => return Ok(None),
+        Some(found) if found.is_file() => {}
+        Some(found) => return Err(unknown(format!("a {}", said(found.file_type())))),
     }
-    let bytes = fs::read(&path).map_err(|error| unknown(error.to_string()))?;
+    let bytes = disk::read(&path)?;
     let shared = bytes.len().min(BEGINNING.len());
     if bytes[..shared] != BEGINNING.as_bytes()[..shared] {
         return Err(unknown("it is no journal".to_owned()));
@@ -308,21 +318,21 @@ fn forward(hidden: &Hidden, replacement: &Replacement) -> Result<(), Problem> {
     let (place, draft, aside) = (hidden.place(), hidden.join(DRAFT), hidden.join(ASIDE));
     be_folder(&aside, || format!("{HIDDEN}/{ASIDE}"))?;
     for name in replacement.old() {
-        let installed = replacement.new.has(name) && !is_there(&name.below(&draft))?;
-        if installed || is_there(&name.below(&aside))? {
+        let installed = replacement.new.has(name) && disk::found(&name.below(&draft))?.is_none();
+        if installed || disk::found(&name.below(&aside))?.is_some() {
             continue;
         }
         match look(place, name)? {
             Found::File { hash } if Some(hash.as_str()) == replacement.old.hash(name) => {
                 make_folders(&aside, name)?;
-                disk::move_file(&name.below(place), &name.below(&aside))?;
+                disk::move_away(&name.below(place), &name.below(&aside))?;
             }
             // Gone, or the user's by now: it is left alone unless a new file is to stand there.
             Found::Nothing | Found::File { .. } | Found::Other { .. } => {}
         }
     }
     for name in replacement.new_files() {
-        if is_there(&name.below(&draft))? {
+        if disk::found(&name.below(&draft))?.is_some() {
             install(&draft, place, name)?;
         }
     }
@@ -335,18 +345,18 @@ fn forward(hidden: &Hidden, replacement: &Replacement) -> Result<(), Problem> {
 fn backward(hidden: &Hidden, replacement: &Replacement) -> Result<(), Problem> {
     let (place, draft, aside) = (hidden.place(), hidden.join(DRAFT), hidden.join(ASIDE));
     for name in replacement.new_files() {
-        if is_there(&name.below(&draft))? {
+        if disk::found(&name.below(&draft))?.is_some() {
             continue;
         }
         match look(place, name)? {
             Found::File { hash } if Some(hash.as_str()) == replacement.new.hash(name) => {
-                disk::move_file(&name.below(place), &name.below(&draft))?;
+                disk::move_away(&name.below(place), &name.below(&draft))?;
             }
             Found::Nothing | Found::File { .. } | Found::Other { .. } => {}
         }
     }
     for name in replacement.old() {
-        if is_there(&name.below(&aside))? {
+        if disk::found(&name.below(&aside))?.is_some() {
             install(&aside, place, name)?;
         }
     }
@@ -374,10 +384,8 @@ fn sync_replaced(hidden: &Hidden, replacement: &Replacement) -> Result<(), Probl
 
 /// Removes these files, the folders above them and the folder itself, where all that empties it.
 fn empty<'n>(folder: &Path, names: impl Iterator<Item = &'n Name>) -> Result<(), Problem> {
-    match fs::symlink_metadata(folder) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
-        Err(error) => return Err(error.into()),
-        Ok(_) => {}
+    if disk::found(folder)?.is_none() {
+        return Ok(());
     }
     let mut folders = BTreeSet::new();
     for name in names {
@@ -389,7 +397,7 @@ fn empty<'n>(folder: &Path, names: impl Iterator<Item = &'n Name>) -> Result<(),
     }
     remove_folders(folder, &folders, &BTreeSet::new())?;
     disk::remove_folder(folder)?;
-    if fs::symlink_metadata(folder).is_err() {
+    if disk::found(folder)?.is_none() {
         return Ok(());
     }
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
@@ -404,7 +412,7 @@ fn remove_folders(
     kept: &BTreeSet<Name>,
 ) -> Result<(), Problem> {
     for name in names.iter().rev().filter(|name| !kept.contains(name)) {
-        if fs::symlink_metadata(name.below(place)).is_ok_and(|metadata| metadata.is_dir()) {
+        if disk::found(&name.below(place))?.is_some_and(|found| found.is_dir()) {
             disk::remove_folder(&name.below(place))?;
         }
     }
@@ -413,14 +421,6 @@ fn remove_folders(
 
 fn make_folders(root: &Path, name: &Name) -> Result<(), Problem> {
     name.folders().try_for_each(|above| be_folder(&above.below(root), || above.to_string()))
-}
-
-fn is_there(path: &Path) -> io::Result<bool> {
-    match fs::symlink_metadata(path) {
-        Ok(_) => Ok(true),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
-        Err(error) => Err(error),
-    }
 }
 
 /// The folder and those in it that these files are in.

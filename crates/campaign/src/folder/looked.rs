@@ -26,7 +26,7 @@ impl Folder<'_> {
     pub fn counting(&self, identity: &Identity) -> Result<Counting, FolderError> {
         let there = || -> Result<Counting, Problem> {
             let (place, record) = (self.hidden.place(), self.hidden.record(self.contents.what)?.0);
-            let complete = manifest(place, &record, identity);
+            let complete = manifest(place, &record, identity)?;
             let complete = complete.map(|manifest| manifest.counting()).unwrap_or_default();
             let area = Area::of(place);
             let is_same =

@@ -7,6 +7,7 @@ use std::{io, ops::Range, path::Path};
 use super::{
     disk,
     name::{Found, Name, look},
+    refusal::Refusal,
 };
 use crate::{
     column::{Column, ColumnSummary},
@@ -222,14 +223,14 @@ impl Manifest {
 }
 
 /// The files of blocks of a folder that are gone or not as they were written; to be called in the threads that are to look.
-pub(crate) fn damaged(place: &Path, blocks: &[Block]) -> io::Result<Vec<String>> {
+pub(crate) fn damaged(place: &Path, blocks: &[Block]) -> Result<Vec<String>, Refusal> {
     let with_file = blocks.par_iter().filter(|block| block.has_file());
     let damaged = with_file.map(|block| {
         let Ok(name) = Name::new(&block.name()) else { return Ok(Some(block.name())) };
         let whole = matches!(look(place, &name)?, Found::File { hash } if hash == block.sha256);
         Ok((!whole).then(|| block.name()))
     });
-    Ok(damaged.collect::<io::Result<Vec<Option<String>>>>()?.into_iter().flatten().collect())
+    Ok(damaged.collect::<Result<Vec<Option<String>>, _>>()?.into_iter().flatten().collect())
 }
 
 pub(crate) fn is_zero(count: &u64) -> bool {

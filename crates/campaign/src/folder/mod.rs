@@ -20,6 +20,7 @@ mod manifest;
 mod name;
 mod problem;
 mod record;
+mod refusal;
 mod shared;
 #[cfg(test)]
 mod tests;
@@ -28,7 +29,7 @@ mod told;
 use std::{
     fmt, fs,
     fs::File,
-    io::{self, Write},
+    io,
     path::{Path, PathBuf},
 };
 
@@ -43,6 +44,7 @@ use name::{Found, Name, look};
 pub use problem::FolderError;
 pub(crate) use problem::Problem;
 use record::Record;
+use refusal::Refusal;
 pub use shared::Shared;
 pub use told::{begun, changed, missing_runs, replacing, told, told_runs, why_unknown};
 
@@ -140,7 +142,8 @@ impl<'a> Folder<'a> {
             Ok(_) => return Err(refused(Problem::NoFolder)),
             Err(_) => true,
         };
-        if !made && !Hidden::is_in(place) {
+        let is_new = || Ok(!made && !Hidden::is_in(place)?);
+        if is_new().map_err(|refusal: Refusal| refused(refusal.into()))? {
             // Before the first file is made in a folder that is not this program's.
             check(place, contents, &Record::default(), force).map_err(refused)?;
         }
@@ -177,8 +180,10 @@ impl<'a> Folder<'a> {
 
     /// Writes a file, making the folders above it. It is in the draft until it is published.
     pub fn write(&mut self, name: &str, content: &str) -> Result<(), FolderError> {
-        let mut file = self.create(name)?;
-        file.write_all(content.as_bytes()).map_err(|error| self.failed(error.into()))
+        let written = Name::new(name)
+            .map_err(Problem::Name)
+            .and_then(|name| self.journal.write(&self.hidden, name, content));
+        written.map_err(|problem| self.failed(problem))
     }
 
     /// Opens a new file for writing, making the folders above it. It is in the draft until it is
@@ -201,7 +206,7 @@ impl<'a> Folder<'a> {
         let whole = || {
             let (record, hash) = self.hidden.record(self.contents.what)?;
             let place = self.hidden.place();
-            let is_mark = fs::read(place.join(self.contents.mark))? == mark.as_bytes();
+            let is_mark = disk::read(&place.join(self.contents.mark))? == mark.as_bytes();
             for name in record.names().filter(|name| !(self.contents.trusted)(&name.to_string())) {
                 match look(place, name)? {
                     Found::File { hash } if record.hash(name) == Some(&hash) => {}
@@ -211,7 +216,7 @@ impl<'a> Folder<'a> {
             Ok(is_mark && hash.is_some())
         };
         match whole() {
-            Err(Problem::Io(error)) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+            Err(Problem::Refused(error)) if error.kind() == io::ErrorKind::NotFound => Ok(false),
             other => other.map_err(|problem: Problem| self.failed(problem)),
         }
     }
@@ -240,7 +245,7 @@ impl<'a> Folder<'a> {
         let new = new.in_folders_of(&stays);
         let text = stays.and(&new).to_json()?;
         let name = Hidden::record_name(what);
-        self.journal.create(&self.hidden, name.clone())?.write_all(text.as_bytes())?;
+        self.journal.write(&self.hidden, name.clone(), &text)?;
         let replacement =
             Replacement::new(Name::new(mark)?, &name, (&old, old_hash), (&new, &text));
         self.journal.replace(&self.hidden, replacement)
@@ -262,7 +267,7 @@ fn make_folder(place: &Path) -> Result<(), Problem> {
     let missing: Vec<_> = place.ancestors().take_while(|above| !above.exists()).collect();
     fs::create_dir_all(place).map_err(|error| {
         let leads_nowhere = place.is_symlink() && !place.exists();
-        if leads_nowhere { Problem::Link } else { error.into() }
+        if leads_nowhere { Problem::Link } else { Refusal::write(place)(error).into() }
     })?;
     for made in missing {
         disk::sync_folder(folder_of(made))?;
@@ -283,7 +288,8 @@ fn abandon(hidden: &Hidden, made: bool) {
 /// draft of one that was killed before, and touches nothing else. For commands that read a folder.
 pub fn restore(place: &Path) -> Result<(), FolderError> {
     let refused = |problem: Problem| FolderError { path: place.to_owned(), problem };
-    if !Hidden::is_in(place) {
+    // Where that cannot be asked, nothing can be read either, and who reads tells it.
+    if !matches!(Hidden::is_in(place), Ok(true)) {
         return Ok(());
     }
     let Some(left) = journal::left(place).map_err(refused)? else { return Ok(()) };
@@ -335,8 +341,8 @@ fn check(
     force: bool,
 ) -> Result<(), Problem> {
     let mut occupied = false;
-    for entry in fs::read_dir(place)? {
-        occupied |= entry?.file_name() != HIDDEN;
+    for entry in disk::entries(place)? {
+        occupied |= entry.file_name() != HIDDEN;
     }
     let (folders, files): (Vec<_>, Vec<_>) =
         contents.certain.iter().partition(|name| name.ends_with('/'));
@@ -346,12 +352,16 @@ fn check(
     let files = files.iter().map(|name| Name::new(name)).collect::<Result<Vec<_>, _>>()?;
     let mark = Name::new(contents.mark)?;
     // Read only if it is the file that was written, and not a pipe, say.
-    let in_the_way = unobstructed(place, record, [&mark]);
+    let in_the_way = match unobstructed(place, record, [&mark]) {
+        // What it is is not known.
+        Err(refused @ Problem::Refused(_)) => return Err(refused),
+        other => other,
+    };
     let known = in_the_way.is_ok() && record.has(&mark);
     let text = || fs::read_to_string(mark.below(place));
     let same = known && text().is_ok_and(|text| (contents.same)(&text));
     // Of a campaign that is not complete, the mark is not there yet; other files may stand beside it.
-    let begun = if known { None } else { begun(place) };
+    let begun = if known { None } else { told::text_of_begun(place)? };
     let goes_on = begun.as_deref().is_some_and(|text| (contents.same)(text));
     if occupied && !same && !goes_on && !force {
         if let Err(changed @ Problem::Changed { .. }) = in_the_way {

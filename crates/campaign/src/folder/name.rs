@@ -3,12 +3,11 @@
 use serde::{Deserialize, Serialize};
 use std::{
     fmt,
-    fs::{self, FileType},
-    io,
+    fs::FileType,
     path::{Path, PathBuf},
 };
 
-use crate::hash::sha256_of_file;
+use super::{disk, refusal::Refusal};
 
 /// The folder in a campaign's folder that tells which files are the campaign's own.
 pub const HIDDEN: &str = ".gyradius";
@@ -89,12 +88,8 @@ pub(super) enum Found {
 }
 
 /// Looks without following any link below the folder.
-pub(super) fn look(folder: &Path, name: &Name) -> io::Result<Found> {
-    let kind = |name: &Name| match fs::symlink_metadata(name.below(folder)) {
-        Ok(metadata) => Ok(Some(metadata.file_type())),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(error),
-    };
+pub(super) fn look(folder: &Path, name: &Name) -> Result<Found, Refusal> {
+    let kind = |name: &Name| Ok(disk::found(&name.below(folder))?.map(|found| found.file_type()));
     let other = |name: &Name, kind: FileType, should| {
         Ok(Found::Other { name: name.to_string(), is: said(kind), should })
     };
@@ -107,9 +102,7 @@ pub(super) fn look(folder: &Path, name: &Name) -> io::Result<Found> {
     }
     match kind(name)? {
         None => Ok(Found::Nothing),
-        Some(kind) if kind.is_file() => {
-            Ok(Found::File { hash: sha256_of_file(&name.below(folder))? })
-        }
+        Some(kind) if kind.is_file() => Ok(Found::File { hash: disk::hash(&name.below(folder))? }),
         Some(kind) => other(name, kind, "file"),
     }
 }

@@ -1,16 +1,16 @@
 //! Why a folder cannot be used.
 
-use std::{
-    io,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
-use super::name::{HIDDEN, Name, NameError};
+use super::{
+    name::{HIDDEN, Name, NameError},
+    refusal::Refusal,
+};
 use crate::identity::Difference;
 
 /// Why a folder cannot be used. Nothing of the user's has been touched.
 #[derive(Debug, thiserror::Error)]
-#[error("output folder {}: {problem}", path.display())]
+#[error("output folder {}: {}", path.display(), self.problem())]
 pub struct FolderError {
     /// As it was given.
     pub(crate) path: PathBuf,
@@ -34,32 +34,24 @@ impl FolderError {
     /// Whether it cannot be written, and nothing else is known to be wrong.
     #[must_use]
     pub fn is_read_only(&self) -> bool {
-        let Problem::Io(error) = &self.problem else { return false };
-        matches!(error.kind(), io::ErrorKind::ReadOnlyFilesystem | io::ErrorKind::PermissionDenied)
+        matches!(&self.problem, Problem::Refused(refusal) if refusal.is_read_only())
     }
 
     /// What is wrong with it.
     #[must_use]
     pub fn problem(&self) -> String {
-        self.problem.to_string()
-    }
-}
-
-/// What there is to do about a full disk.
-fn how_on(error: &io::Error) -> &'static str {
-    match error.kind() {
-        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
-            ". What was finished stays, and the same command goes on once there is room"
+        match &self.problem {
+            Problem::Refused(refusal) => refusal.said_of(&self.path),
+            other => other.to_string(),
         }
-        _ => "",
     }
 }
 
 /// What is wrong with a folder.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Problem {
-    #[error("it cannot be written: {0}{how}", how = how_on(.0))]
-    Io(io::Error),
+    #[error("{0}")]
+    Refused(Refusal),
     #[error("stopped")]
     Stopped,
     #[error("it is not a folder")]
@@ -125,8 +117,8 @@ impl From<serde_json::Error> for Problem {
     }
 }
 
-impl From<io::Error> for Problem {
-    fn from(error: io::Error) -> Self {
-        Self::Io(error)
+impl From<Refusal> for Problem {
+    fn from(refusal: Refusal) -> Self {
+        Self::Refused(refusal)
     }
 }

@@ -34,7 +34,9 @@ impl Shared {
     /// # Errors
     /// The folder holds something else, cannot be written, or somebody has it alone.
     pub fn open(place: &Path, contents: &Contents<'_>) -> Result<Self, FolderError> {
-        let (is_made, is_new) = (!place.exists(), !Hidden::is_in(place));
+        let failed = |problem: Problem| FolderError { path: place.to_owned(), problem };
+        let is_new = !Hidden::is_in(place).map_err(|refusal| failed(refusal.into()))?;
+        let is_made = !place.exists();
         // Alone if nobody else is there.
         match Folder::prepare(place, contents, false) {
             Ok(folder) => folder.leave(),
@@ -42,7 +44,6 @@ impl Shared {
             Err(error) if is_passing(&error.problem, place) => {}
             Err(error) => return Err(error),
         }
-        let failed = |problem: Problem| FolderError { path: place.to_owned(), problem };
         // Asked again with the lock: who was there meanwhile may have put something else in place.
         let share = || {
             super::make_folder(place)?;
@@ -86,7 +87,7 @@ impl Drop for Shared {
 fn is_passing(problem: &Problem, place: &Path) -> bool {
     use io::ErrorKind::{AlreadyExists, NotFound};
     let is_missing = matches!(problem, Problem::NoFolder)
-        || matches!(problem, Problem::Io(e) if matches!(e.kind(), NotFound | AlreadyExists));
+        || matches!(problem, Problem::Refused(e) if matches!(e.kind(), NotFound | AlreadyExists));
     // Asked once: between two questions it may come and go.
     let may_come = match fs::symlink_metadata(place) {
         Ok(there) => there.is_dir() || there.is_symlink() && place.is_dir(),

@@ -2,8 +2,6 @@
 
 use std::{
     cmp::Reverse,
-    fs,
-    io::ErrorKind,
     iter,
     ops::Range,
     path::{Path, PathBuf},
@@ -12,10 +10,12 @@ use std::{
 use super::{
     Contents, FolderError, Problem,
     area::Area,
+    disk,
     hidden::Hidden,
     manifest::{Block, MANIFEST, Manifest},
     name::{Found, HIDDEN, Name, look},
     record::Record,
+    refusal::Refusal,
 };
 use crate::{
     identity::{Difference, Identity},
@@ -25,26 +25,37 @@ use crate::{
 };
 
 /// The text from which the unfinished campaign in a folder was begun, if there is one.
-#[must_use]
-pub fn begun(place: &Path) -> Option<String> {
+///
+/// # Errors
+/// Whether there is one cannot be read.
+pub fn begun(place: &Path) -> Result<Option<String>, FolderError> {
+    text_of_begun(place).map_err(|problem| FolderError { path: place.to_owned(), problem })
+}
+
+pub(super) fn text_of_begun(place: &Path) -> Result<Option<String>, Problem> {
     let area = Area::of(place);
-    area.identity().ok()??;
-    area.mark()
+    Ok(if area.identity()?.is_some() { area.mark()? } else { None })
 }
 
 /// What the unfinished campaign in a folder has otherwise than the complete one that it is to replace, and that is the one of the
 /// folder until then, if there are two.
-#[must_use]
-pub fn replacing(place: &Path) -> Option<Difference> {
-    let unfinished = Identity::begun(place)?;
-    Manifest::read(place).ok()?.identity().difference(&unfinished)
+///
+/// # Errors
+/// Whether there are two cannot be read.
+pub fn replacing(place: &Path) -> Result<Option<Difference>, FolderError> {
+    let Some(unfinished) = Identity::begun(place)? else { return Ok(None) };
+    let complete = Manifest::read(place).ok();
+    Ok(complete.and_then(|complete| complete.identity().difference(&unfinished)))
 }
 
 impl Identity {
     /// That of the unfinished campaign in a folder, if there is one.
-    #[must_use]
-    pub fn begun(place: &Path) -> Option<Self> {
-        Area::of(place).identity().ok()?
+    ///
+    /// # Errors
+    /// Whether there is one cannot be read.
+    pub fn begun(place: &Path) -> Result<Option<Self>, FolderError> {
+        let there = Area::of(place).identity();
+        there.map_err(|problem| FolderError { path: place.to_owned(), problem })
     }
 }
 
@@ -59,23 +70,27 @@ impl Block {
         model: &str,
         run: u64,
     ) -> Result<Option<(Self, PathBuf)>, FolderError> {
-        let area = Area::of(place);
-        let recorded = area.recorded();
-        let recorded =
-            recorded.map_err(|problem| FolderError { path: place.to_owned(), problem })?;
-        let own = |block: &Self| block.model == model && block.range().contains(&run);
-        let files = recorded.into_iter().filter(own).map(|block| {
-            let (root, name) = area.place_of(&block, place);
-            let path = root.join(name);
-            (block, path)
-        });
-        Ok(files.filter(|(block, path)| is_whole(path, block)).max_by_key(|(block, _)| block.again))
+        let there = || {
+            let area = Area::of(place);
+            let mut there: Option<(Self, PathBuf)> = None;
+            for block in area.recorded()? {
+                let is_own = block.model == model && block.range().contains(&run);
+                let is_later = there.as_ref().is_none_or(|(other, _)| other.again <= block.again);
+                let (root, name) = area.place_of(&block, place);
+                let path = root.join(name);
+                if is_own && is_later && is_whole(&path, &block)? {
+                    there = Some((block, path));
+                }
+            }
+            Ok(there)
+        };
+        there().map_err(|problem: Problem| FolderError { path: place.to_owned(), problem })
     }
 }
 
 /// Whether a file is there with the length of a block.
-fn is_whole(path: &Path, block: &Block) -> bool {
-    fs::symlink_metadata(path).is_ok_and(|found| found.is_file() && found.len() == block.bytes)
+pub(super) fn is_whole(path: &Path, block: &Block) -> Result<bool, Refusal> {
+    Ok(disk::found(path)?.is_some_and(|found| found.is_file() && found.len() == block.bytes))
 }
 
 /// The blocks in a folder, as its files tell of them: those of a complete campaign, and those of one that is not. Nothing
@@ -88,17 +103,25 @@ pub fn told(
     contents: &Contents<'_>,
     identity: &Identity,
 ) -> Result<Vec<Block>, FolderError> {
-    let failed = |problem: Problem| FolderError { path: place.to_owned(), problem };
-    let (record, _) = Hidden::record_of(place, contents.what).map_err(failed)?;
-    let mut blocks = published(place, &record, identity).1;
-    let area = Area::of(place);
-    if area.identity().map_err(failed)?.is_some_and(|there| identity.difference(&there).is_none()) {
-        blocks.extend(area.recorded().map_err(failed)?);
-    }
-    blocks.retain(|block| {
-        let (root, name) = area.place_of(block, place);
-        !block.has_file() || is_whole(&root.join(name), block)
-    });
+    let there = || {
+        let (record, _) = Hidden::record_of(place, contents.what)?;
+        let mut told = published(place, &record, identity)?.1;
+        let area = Area::of(place);
+        if area.identity()?.is_some_and(|there| identity.difference(&there).is_none()) {
+            told.extend(area.recorded()?);
+        }
+        let mut blocks = Vec::new();
+        for block in told {
+            let (root, name) = area.place_of(&block, place);
+            if !block.has_file() || is_whole(&root.join(name), &block)? {
+                blocks.push(block);
+            }
+        }
+        Ok(blocks)
+    };
+    let blocks = there();
+    let mut blocks =
+        blocks.map_err(|problem: Problem| FolderError { path: place.to_owned(), problem })?;
     let order = |b: &Block| (b.first_run, Reverse(b.again), !b.published);
     blocks.sort_by(|a, b| a.model.cmp(&b.model).then_with(|| order(a).cmp(&order(b))));
     blocks.dedup_by(|a, b| (&a.model, a.first_run) == (&b.model, b.first_run));
@@ -118,34 +141,27 @@ pub fn told_runs(place: &Path, blocks: &[Block], empty: &Table) -> Runs {
 }
 
 /// The first of these files in a folder that is not as this program wrote it, and what became of it, in words. Nothing is known of a copy
-/// without the hidden folder, of one that others may not read, and of a file that was not written.
+/// without the hidden folder, and of a file that was not written.
 ///
 /// # Errors
-/// The file that tells what was written there cannot be read.
+/// The file that tells what was written there cannot be read, nor one of these.
 pub fn changed(place: &Path, what: &str, names: &[&str]) -> Result<Option<String>, FolderError> {
-    let failed = |problem: Problem| FolderError { path: place.to_owned(), problem };
-    let record = match Hidden::record_of(place, what) {
-        Ok((record, _)) => record,
-        Err(Problem::Io(error))
-            if matches!(error.kind(), ErrorKind::PermissionDenied | ErrorKind::NotADirectory) =>
-        {
-            return Ok(None);
-        }
-        Err(problem) => return Err(failed(problem)),
-    };
-    let became = |name: &&str| {
-        let own = Name::new(name).ok()?;
-        let written = record.hash(&own)?;
-        match look(place, &own) {
-            Ok(Found::File { hash }) if hash == written => None,
-            Ok(Found::File { .. } | Found::Other { .. }) => {
+    let became = |name: &str, record: &Record| {
+        let own = Name::new(name)?;
+        let Some(written) = record.hash(&own) else { return Ok(None) };
+        Ok(match look(place, &own)? {
+            Found::File { hash } if hash == written => None,
+            Found::File { .. } | Found::Other { .. } => {
                 Some(format!("{name} in it was changed after it was written"))
             }
-            Ok(Found::Nothing) => Some(format!("{name} in it is not there any more")),
-            Err(error) => Some(format!("{name} in it cannot be read: {error}")),
-        }
+            Found::Nothing => Some(format!("{name} in it is not there any more")),
+        })
     };
-    Ok(names.iter().find_map(became))
+    let first = || {
+        let (record, _) = Hidden::record_of(place, what)?;
+        names.iter().find_map(|name| became(name, &record).transpose()).transpose()
+    };
+    first().map_err(|problem: Problem| FolderError { path: place.to_owned(), problem })
 }
 
 /// Why nothing is known of the complete campaign of this identity in a folder, if nothing is.
@@ -157,24 +173,26 @@ pub fn why_unknown(
     contents: &Contents<'_>,
     identity: &Identity,
 ) -> Result<Option<String>, FolderError> {
-    let what = contents.what;
-    if !place.join(MANIFEST).exists() {
-        return Ok(Some(format!("it holds no runs of a {what}")));
-    }
-    if !place.join(HIDDEN).exists() {
-        return Ok(Some(format!(
-            "it is a copy without the folder {HIDDEN}, which tells what its files are: copy that too"
-        )));
-    }
-    let found = Hidden::record_of(place, what);
-    let (record, hash) =
-        found.map_err(|problem| FolderError { path: place.to_owned(), problem })?;
-    if hash.is_none() {
-        let name = Hidden::record_name(what);
-        return Ok(Some(format!("{name}, which tells what its files are, is not there")));
-    }
-    let problem = || format!("{MANIFEST} is not as it was written, so that nobody knows its runs");
-    Ok(manifest(place, &record, identity).is_none().then(problem))
+    let why = || {
+        let what = contents.what;
+        if disk::found(&place.join(MANIFEST))?.is_none() {
+            return Ok(Some(format!("it holds no runs of a {what}")));
+        }
+        if !Hidden::is_in(place)? {
+            return Ok(Some(format!(
+                "it is a copy without the folder {HIDDEN}, which tells what its files are: copy that too"
+            )));
+        }
+        let (record, hash) = Hidden::record_of(place, what)?;
+        if hash.is_none() {
+            let name = Hidden::record_name(what);
+            return Ok(Some(format!("{name}, which tells what its files are, is not there")));
+        }
+        let problem =
+            || format!("{MANIFEST} is not as it was written, so that nobody knows its runs");
+        Ok(manifest(place, &record, identity)?.is_none().then(problem))
+    };
+    why().map_err(|problem: Problem| FolderError { path: place.to_owned(), problem })
 }
 
 /// The runs from 0 to below a number that are in none of these ranges, which are in order: in parts that no block of so
@@ -201,21 +219,30 @@ pub fn missing_runs(
 }
 
 /// What is kept of the complete campaign of this identity, and its blocks, if the folder has one.
-pub(super) fn published(place: &Path, record: &Record, identity: &Identity) -> (Kept, Vec<Block>) {
+pub(super) fn published(
+    place: &Path,
+    record: &Record,
+    identity: &Identity,
+) -> Result<(Kept, Vec<Block>), Refusal> {
     let known =
         |name: &str, sha: &str| Name::new(name).is_ok_and(|name| record.hash(&name) == Some(sha));
-    let manifest = manifest(place, record, identity);
+    let manifest = manifest(place, record, identity)?;
     let kept = manifest.as_ref().map(|manifest| manifest.kept().clone()).unwrap_or_default();
     let is_known = |block: &Block| !block.has_file() || known(&block.name(), &block.sha256);
     let blocks = manifest.into_iter().flat_map(Manifest::into_blocks);
-    (kept, blocks.filter(|block| block.is_sound() && is_known(block)).collect())
+    Ok((kept, blocks.filter(|block| block.is_sound() && is_known(block)).collect()))
 }
 
 /// What tells of the complete campaign of this identity, if the folder has one and it is as it was written.
-pub(super) fn manifest(place: &Path, record: &Record, identity: &Identity) -> Option<Manifest> {
-    let unchanged = Name::new(MANIFEST).is_ok_and(|name| {
-        matches!(look(place, &name), Ok(Found::File { hash }) if record.hash(&name) == Some(&hash))
-    });
+pub(super) fn manifest(
+    place: &Path,
+    record: &Record,
+    identity: &Identity,
+) -> Result<Option<Manifest>, Refusal> {
+    let Ok(name) = Name::new(MANIFEST) else { return Ok(None) };
+    let unchanged = matches!(
+        look(place, &name)?, Found::File { hash } if record.hash(&name) == Some(&hash)
+    );
     let manifest = Manifest::read(place).ok().filter(|_| unchanged);
-    manifest.filter(|manifest| manifest.identity().difference(identity).is_none())
+    Ok(manifest.filter(|manifest| manifest.identity().difference(identity).is_none()))
 }

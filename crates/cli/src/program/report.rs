@@ -16,10 +16,10 @@ use crate::program::{
 /// Runs the verb.
 pub(crate) fn report(arguments: &ReportArgs) -> Result<ExitCode, Box<dyn Error>> {
     let folder = arguments.study.as_deref().unwrap_or(Path::new(DEFAULT));
-    if let Some(replacement) = replacement(folder) {
+    if let Some(replacement) = replacement(folder)? {
         notice(Notice::Replacement(replacement));
     }
-    if !is_begun(folder) {
+    if !is_begun(folder)? {
         let written = write(folder, arguments)?;
         print(&format!("report: {}\n", written.join("report.html").display()))?;
         return Ok(ExitCode::SUCCESS);

@@ -1,8 +1,8 @@
 //! Holding the row of a run that was done again against that of the study, bit by bit.
 
 use gyradius_campaign::{
-    Block, Cell, Column, Identity, Kept, MANIFEST, Manifest, Row, Rows, RunsError, Table, read_run,
-    replacing,
+    Block, Cell, Column, FolderError, Identity, Kept, MANIFEST, Manifest, Row, Rows, RunsError,
+    Table, read_run, replacing,
 };
 use parquet::errors::ParquetError;
 use std::{
@@ -46,10 +46,12 @@ impl Held {
         let manifest = Manifest::read(folder);
         let (model, run) = (own.model(), own.first());
         // Until a study is put together, its blocks are elsewhere, also those that take the place of blocks that failed.
-        let goes_on = Identity::begun(folder).is_some() && replacing(folder).is_none();
-        if goes_on
-            && let Some((block, path)) =
-                Block::begun(folder, model, run).map_err(ResultsError::from)?
+        let begun = || {
+            let goes_on = Identity::begun(folder)?.is_some() && replacing(folder)?.is_none();
+            Ok((goes_on, if goes_on { Block::begun(folder, model, run)? } else { None }))
+        };
+        let (goes_on, begun) = begun().map_err(|error: FolderError| ResultsError::from(error))?;
+        if let Some((block, path)) = begun
             && let done = manifest.as_ref().ok().and_then(|all| all.find(model, run))
             && done.is_none_or(|done| done.again() < block.again())
         {

@@ -386,7 +386,7 @@ fn shards_are_put_together_without_the_simulator() {
     let status = Status::read(&out("shards")).unwrap();
     let done: u64 = status.models.iter().map(|model| model.finished).sum();
     assert_eq!(done, any.planned_runs(Some(shard(1, 3))) + any.planned_runs(Some(shard(2, 3))));
-    assert!(!status.complete && is_begun(&out("shards")));
+    assert!(!status.complete && is_begun(&out("shards")).unwrap());
     let part = put_together(&out("shards"), &Options::default(), &|_| {}).unwrap();
     assert_eq!(
         part.missing().iter().map(|m| m.range().end - m.range().start).sum::<u64>(),
@@ -398,7 +398,7 @@ fn shards_are_put_together_without_the_simulator() {
     any.run_shard(&options("shards"), shard(3, 3), &|_| {}, &|_| {}).unwrap();
     fs::remove_file(folder.path().join("answer.sh")).unwrap();
     let together = put_together(&out("shards"), &Options::default(), &|_| {}).unwrap();
-    assert!(together.missing().is_empty() && !is_begun(&out("shards")));
+    assert!(together.missing().is_empty() && !is_begun(&out("shards")).unwrap());
     assert!(Status::read(&out("shards")).unwrap().complete);
     for name in ["scenario.toml", "summary.json", "report.html", "report.md"] {
         let [a, b] =
