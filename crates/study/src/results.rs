@@ -147,7 +147,7 @@ pub(crate) fn read<C: Subject>(folder: &Path) -> Result<Results<C, C::Summary>, 
     }
     let no_summary = |e: serde_json::Error| problem(format!("summary.json is no summary: {e}"));
     let text = read_text(&written, BYTES)
-        .map_err(|e: io::Error| problem(format!("summary.json cannot be read: {e}")))?;
+        .map_err(|e: io::Error| problem(format!("summary.json in it cannot be read: {e}")))?;
     let value: Value = serde_json::from_str(&text).map_err(no_summary)?;
     let said = |field: &str| value[field].as_str().map(str::to_owned);
     let (Some(version), Some(fingerprint)) = (said("gyradius_version"), said("fingerprint")) else {

@@ -33,7 +33,7 @@ impl Refusal {
     }
 
     fn of(path: &Path, access: Access) -> impl FnOnce(io::Error) -> Self {
-        move |error| Self { path: path.to_owned(), access, error }
+        move |error| Self { path: closed(path, &error).to_owned(), access, error }
     }
 
     pub(super) fn kind(&self) -> io::ErrorKind {
@@ -68,6 +68,13 @@ impl Refusal {
     }
 }
 
+/// What has to be opened to somebody: the file that is there, or else the folder in which it can neither be seen nor made.
+fn closed<'p>(path: &'p Path, error: &io::Error) -> &'p Path {
+    let is_seen = |path: &&Path| fs::symlink_metadata(path).is_ok();
+    let is_closed = error.kind() == io::ErrorKind::PermissionDenied;
+    path.ancestors().find(is_seen).filter(|_| is_closed).unwrap_or(path)
+}
+
 /// What the system said, for those who know of what.
 impl From<Refusal> for io::Error {
     fn from(refusal: Refusal) -> Self {
@@ -95,17 +102,21 @@ mod tests {
     fn the_file_that_is_refused_is_named() {
         let scratch = tempfile::tempdir().unwrap();
         let place = scratch.path().join("out");
-        fs::create_dir(&place).unwrap();
+        fs::create_dir_all(place.join(".gyradius")).unwrap();
+        fs::write(place.join(".gyradius/lock"), "").unwrap();
         std::os::unix::fs::symlink("out", scratch.path().join("link")).unwrap();
         let denied = || io::Error::from_raw_os_error(13);
         let elsewhere = scratch.path().join("other");
+        fs::write(&elsewhere, "").unwrap();
         for place in [place, scratch.path().join("link")] {
             let whole = fs::canonicalize(&place).unwrap();
             for (path, name) in [
                 (place.clone(), "it".to_owned()),
                 (whole.clone(), "it".to_owned()),
                 (place.join(".gyradius/lock"), ".gyradius/lock in it".to_owned()),
-                (whole.join("runs/a"), "runs/a in it".to_owned()),
+                (whole.join(".gyradius/lock"), ".gyradius/lock in it".to_owned()),
+                (whole.join(".gyradius/draft/mark"), ".gyradius in it".to_owned()),
+                (whole.join("runs/a"), "it".to_owned()),
                 (elsewhere.clone(), elsewhere.display().to_string()),
             ] {
                 let refused = [Refusal::read(&path)(denied()), Refusal::write(&path)(denied())];
@@ -119,6 +130,10 @@ mod tests {
                 }
             }
         }
+        // What is not there is told by its own name.
+        let path = elsewhere.with_file_name("nowhere");
+        let gone = Refusal::read(&path)(io::ErrorKind::NotFound.into());
+        assert!(gone.to_string().starts_with(&path.display().to_string()), "{gone}");
         // Where nothing says of which folder, the whole path is told.
         let problem = Problem::from(Refusal::read(&elsewhere)(denied()));
         let stuck = Problem::Stuck { problem: Box::new(problem) }.to_string();
