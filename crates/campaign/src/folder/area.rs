@@ -85,11 +85,8 @@ impl Area {
         }
         let name = format!("{}/{IDENTITY}", self.name());
         let unknown = |problem: String| Problem::Unknown { name, problem };
-        match disk::read(&self.0.join(IDENTITY)) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-            Err(error) => Err(error.into()),
-            Ok(text) => serde_json::from_slice(&text).map(Some).map_err(|e| unknown(e.to_string())),
-        }
+        let Some(text) = disk::read_if_there(&self.0.join(IDENTITY))? else { return Ok(None) };
+        serde_json::from_slice(&text).map(Some).map_err(|error| unknown(error.to_string()))
     }
 
     /// Makes the folder, if it is not there, and tells in it what the campaign is, unless that is told already: of several who
@@ -146,7 +143,7 @@ impl Area {
         if !disk::found(&path)?.is_some_and(|found| found.is_file()) {
             return Ok(None);
         }
-        Ok(String::from_utf8(disk::read(&path)?).ok())
+        Ok(disk::read_if_there(&path)?.and_then(|text| String::from_utf8(text).ok()))
     }
 
     /// Tells that a rule looks at the runs.

@@ -69,6 +69,19 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, Refusal> {
     read().map_err(Refusal::read(path))
 }
 
+/// The same; none if nothing is there, or not any more: others may be at work.
+pub(super) fn read_if_there(path: &Path) -> Result<Option<Vec<u8>>, Refusal> {
+    if_there(read(path))
+}
+
+/// What was done with a file; none if it is not there.
+pub(super) fn if_there<T>(done: Result<T, Refusal>) -> Result<Option<T>, Refusal> {
+    match done {
+        Err(refusal) if refusal.kind() == io::ErrorKind::NotFound => Ok(None),
+        other => other.map(Some),
+    }
+}
+
 /// The SHA-256 of a file in hexadecimal.
 pub(super) fn hash(path: &Path) -> Result<String, Refusal> {
     sha256_of_file(path).map_err(Refusal::read(path))

@@ -115,7 +115,9 @@ impl Hidden {
             Some(found) if found.is_file() => {}
             Some(found) => return Err(unknown(format!("a {}", said(found.file_type())))),
         }
-        let text = disk::read(&path)?;
+        let Some(text) = disk::read_if_there(&path)? else {
+            return Ok((Record::default(), None));
+        };
         let record = serde_json::from_slice(&text).map_err(|error| unknown(error.to_string()))?;
         Ok((record, Some(sha256(&text))))
     }

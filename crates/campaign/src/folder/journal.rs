@@ -295,7 +295,7 @@ fn read(place: &Path) -> Result<Option<Vec<Line>>, Problem> {
         Some(found) if found.is_file() => {}
         Some(found) => return Err(unknown(format!("a {}", said(found.file_type())))),
     }
-    let bytes = disk::read(&path)?;
+    let Some(bytes) = disk::read_if_there(&path)? else { return Ok(None) };
     let shared = bytes.len().min(BEGINNING.len());
     if bytes[..shared] != BEGINNING.as_bytes()[..shared] {
         return Err(unknown("it is no journal".to_owned()));

@@ -102,7 +102,10 @@ pub(super) fn look(folder: &Path, name: &Name) -> Result<Found, Refusal> {
     }
     match kind(name)? {
         None => Ok(Found::Nothing),
-        Some(kind) if kind.is_file() => Ok(Found::File { hash: disk::hash(&name.below(folder))? }),
+        Some(kind) if kind.is_file() => {
+            let hash = disk::if_there(disk::hash(&name.below(folder)))?;
+            Ok(hash.map_or(Found::Nothing, |hash| Found::File { hash }))
+        }
         Some(kind) => other(name, kind, "file"),
     }
 }
