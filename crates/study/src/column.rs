@@ -180,7 +180,7 @@ mod tests {
             numbers of the built-in study, 467 bytes a run, LZ4 would leave 391 and zstd 380, both with the bytes of the numbers\n\
             split into streams (measured with pyarrow 26). [What to keep](study.md#keeping-less) saves more.\n\n\
             Each spring has a `spring_…_release_s`, springs from 1. In the place of `payload_mass_kg` stands what else is\n\
-            [dispersed](scenario.md#what-else-is-uncertain), in that order; nothing if nothing is. The outcomes are explained in\n\
+            [dispersed](scenario.md#what-else-is-uncertain), in that order; if nothing else is dispersed, the column is not there. The outcomes are explained in\n\
             [separation](models/separation.md), equation numbers are those of Peck (2003).\n\n\
             | column | unit | |\n|---|---|---|\n"
             .to_owned();

@@ -285,10 +285,13 @@ impl Judgement {
         let Self { failures, counted, .. } = self;
         let keep =
             if *failures == 1 || *counted == 1 { "does not keep it" } else { "do not keep it" };
-        let allowed = self.allowed_failures.map_or_else(
-            || format!("so few {} cannot show that it is met", self.unit(0)),
-            |allowed| format!("at most {allowed} may fail"),
-        );
+        let allowed = match (self.allowed_failures, self.verdict) {
+            (Some(allowed), _) => format!("at most {allowed} may fail"),
+            (None, Verdict::NotMet) => "that is more than the required share allows".to_owned(),
+            (None, Verdict::Met | Verdict::Undecided { .. }) => {
+                format!("so few {} cannot show that it is met", self.unit(0))
+            }
+        };
         let (verdict, unit) = (words(self.verdict), self.unit(*counted));
         format!("{verdict}: {failures} of {counted} {unit} {keep}; {allowed}")
     }

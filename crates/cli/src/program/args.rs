@@ -22,7 +22,7 @@ use crate::program::{
     stated::{ROBOTS, StatedArgs},
 };
 
-/// Uncertain rigid-body inertia: Monte Carlo studies of spacecraft separation.
+/// Uncertain mass properties of rigid bodies: laws of them, draws, Monte Carlo campaigns and verdicts.
 #[derive(Debug, Parser)]
 #[command(name = "gyradius", version, arg_required_else_help = true, after_help = EXIT_CODES)]
 pub(crate) struct Cli {
@@ -795,7 +795,7 @@ fn whole(text: &str) -> Result<u64, String> {
         }
         let certain = 1_u64 << 53;
         format!(
-            "it must be a whole number and not negative, as 1000000, 1_000_000 or 1e6; from {certain} on it must be written \
+            "it must be a whole number and not negative, as 1000000, 1_000_000 or 1e6; one of {certain} or more must be written \
              with all its digits"
         )
     })

@@ -214,6 +214,7 @@ written; 130 or 143 after a signal, upon which the same command goes on.";
 
 pub(crate) const COMPLETIONS_EXAMPLES: &str = "\
 Examples:
+  mkdir -p ~/.local/share/bash-completion/completions
   gyradius completions bash > ~/.local/share/bash-completion/completions/gyradius
   gyradius completions zsh > ~/.zfunc/_gyradius
   gyradius completions fish > ~/.config/fish/completions/gyradius.fish
@@ -224,6 +225,7 @@ pub(crate) const MAN_EXAMPLES: &str = "\
 Examples:
   gyradius man | man -l -
       The page of the program, as `man` shows it
+  mkdir -p ~/.local/share/man/man1
   gyradius man study > ~/.local/share/man/man1/gyradius-study.1
       The page of a verb, for `man gyradius-study`
 

@@ -202,7 +202,7 @@ pub(crate) fn whole<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u64, D
 
         fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
             f.write_str(
-                "a whole number that is not negative, from 9007199254740992 on with all its digits",
+                "a whole number that is not negative, and of 9007199254740992 or more with all its digits",
             )
         }
 
