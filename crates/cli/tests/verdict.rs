@@ -271,3 +271,29 @@ fn tables_in_other_forms_are_named() {
         assert!(said.contains(&format!("{file}: {form}, and CSV and Parquet are read")), "{said}");
     }
 }
+
+/// The page names every key of the JSON.
+#[test]
+fn keys_stand_on_the_page() {
+    let page = include_str!("../../../docs/requirements.md");
+    let scratch = Scratch::new();
+    fs::write(scratch.path("y.csv"), "y\n1\n2\n3\n").unwrap();
+    let requires = ["y <= 9 in 50 % at 50 %", "y <= 0 in 90 % at 90 %", "y <= 9 in 90 % at 90 %"];
+    let each = requires.into_iter().flat_map(|require| ["--require", require]);
+    let said = scratch
+        .done(&["verdict", "y.csv", "--json"].into_iter().chain(each).collect::<Vec<_>>(), 1);
+    let said: Value = serde_json::from_str(&said).unwrap();
+    let judged = said["requirements"].as_array().unwrap();
+    let verdicts: Vec<String> = judged
+        .iter()
+        .map(|judged| match &judged["verdict"] {
+            Value::Object(decided) => decided.keys().next().unwrap().clone(),
+            verdict => verdict.as_str().unwrap().to_owned(),
+        })
+        .collect();
+    assert_eq!(verdicts, ["met", "not_met", "undecided"]);
+    let keys = said.as_object().unwrap().keys().chain(judged[0].as_object().unwrap().keys());
+    for key in keys.chain(&verdicts) {
+        assert!(page.contains(&format!("`{key}`")), "{key}");
+    }
+}

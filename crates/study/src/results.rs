@@ -138,12 +138,12 @@ pub(crate) fn read<C: Subject>(folder: &Path) -> Result<Results<C, C::Summary>, 
         found => Ok(found.is_ok_and(|found| found.is_file())),
     };
     if !is_there(&file)? {
-        return Err(problem(changed(&["scenario.toml"])?.unwrap_or_else(no_study)));
+        return Err(problem(changed(&["scenario.toml"])?.unwrap_or_else(|| no_study(folder))));
     }
     if !is_there(&written)? {
         let again = "the command that made the study puts its runs together again";
         let gone = changed(&["summary.json"])?.map(|gone| format!("{gone}: {again}"));
-        return Err(problem(gone.unwrap_or_else(no_study)));
+        return Err(problem(gone.unwrap_or_else(|| no_study(folder))));
     }
     let no_summary = |e: serde_json::Error| problem(format!("summary.json is no summary: {e}"));
     let text = read_text(&written, BYTES)
@@ -173,10 +173,14 @@ pub(crate) fn read<C: Subject>(folder: &Path) -> Result<Results<C, C::Summary>, 
     Ok(Results { folder: folder.to_owned(), scenario, summary })
 }
 
-/// What is wrong with a folder in which none was ever written.
-fn no_study() -> String {
-    "it holds no study, which has a scenario.toml and a summary.json; name the folder of one"
-        .to_owned()
+/// What is wrong with a folder in which no study was ever written.
+pub(crate) fn no_study(folder: &Path) -> String {
+    let said = if folder.exists() {
+        "it holds no study, which has a scenario.toml and a summary.json; name the folder of one"
+    } else {
+        "it holds no study, for there is no such folder; name the folder of one"
+    };
+    said.to_owned()
 }
 
 /// Whether two paths lead to the same folder.

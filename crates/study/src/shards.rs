@@ -12,6 +12,7 @@ use crate::{
     contents::{contents, identity, shared},
     decisions::check_columns,
     head::Missing,
+    results::no_study,
     scenario::read_file,
     study::{count, foretell, plan, same_as_before},
     subject::Subject,
@@ -149,7 +150,7 @@ pub(crate) fn text(folder: &Path) -> Result<String, StudyError> {
     if let Some(problem) = changed(folder, "study", &["scenario.toml"])? {
         return Err(absent(problem));
     }
-    read_file(&folder.join("scenario.toml")).map_err(|_| absent("it holds no study".to_owned()))
+    read_file(&folder.join("scenario.toml")).map_err(|_| absent(no_study(folder)))
 }
 
 /// What of a study is there.

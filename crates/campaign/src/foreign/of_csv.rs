@@ -36,19 +36,20 @@ pub(super) fn csv_columns(path: &Path, text: &CsvText) -> Result<(u8, Vec<String
                 .is_some_and(|row| row.is_ok_and(|row| row.len() == names.len()));
         Ok::<_, ForeignError>((agrees, names.iter().map(str::to_owned).collect::<Vec<_>>()))
     };
+    let rank = |(agrees, names): &(bool, Vec<String>)| (*agrees, names.len());
     let mut best = (b',', head(b',')?);
     for separator in [b';', b'\t'] {
-        let (agrees, names) = head(separator)?;
-        if (agrees, names.len()) > (best.1.0, best.1.1.len()) {
-            best = (separator, (agrees, names));
+        let found = head(separator)?;
+        if rank(&found) > rank(&best.1) {
+            best = (separator, found);
         }
     }
-    let best = (best.0, best.1.1);
-    if best.1.iter().all(String::is_empty) {
+    let (separator, (_, names)) = best;
+    if names.iter().all(String::is_empty) {
         let problem = "it is empty: the first line must have the names of the columns".to_owned();
         return Err(ForeignError { path: path.to_owned(), problem });
     }
-    Ok(best)
+    Ok((separator, names))
 }
 
 /// What reads a table with this separator and so many columns.

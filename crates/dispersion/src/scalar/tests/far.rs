@@ -27,7 +27,7 @@ fn bounds_far_out_are_met() {
         }
     }
     let law = ScalarLaw::truncated_normal(0.0, 1.0, -2.3, 27.0).unwrap();
-    // With Φ by mpmath: 1 − Φ(24) over Φ(2.3).
+    // 1 − Φ(24) over Φ(2.3), of which the score is 24 + ln Φ(2.3)/24.04 to first order.
     assert!((law.share_above(24.0) / (above(24.0) / below(2.3)) - 1.0).abs() < 1e-11);
     assert!((law.score(24.0) - 23.999_551).abs() < 1e-6, "{}", law.score(24.0));
     let law = ScalarLaw::truncated_normal(0.0, 1.0, 5.0, 33.0).unwrap();
