@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 use crate::gauss_legendre::panel;
 use crate::normal::above;
-use crate::scaled::root_of_square;
+use crate::scaled::root_of_squares;
 
 /// The nearer bound may be this many standard deviations from the mean: beyond, the Gaussian holds
 /// 1e-9.
@@ -266,7 +266,7 @@ impl TruncatedNormal {
         }) / whole;
         WindowMoments {
             mean,
-            deviation: root_of_square(s, |s| s * s * variance),
+            deviation: root_of_squares(s, |unit| (s / unit) * (s / unit) * variance),
             square_mean: mean * mean + s * s * variance,
             square_variance: s * s * square,
         }

@@ -1,8 +1,8 @@
 //! Vehicles and their flights: which of them a run is.
 
-use gyradius_campaign::{Column, Counting, ForeignError, ForeignTable, Kind};
+use gyradius_campaign::{Column, Counting, ForeignError, ForeignTable, Kind, Spans};
 use serde::{Deserialize, Serialize};
-use std::{borrow::Cow, collections::HashSet, fmt};
+use std::{borrow::Cow, fmt};
 
 /// Vehicles, each of which flies so many times.
 ///
@@ -129,6 +129,19 @@ impl Fleet {
     }
 }
 
+/// Vehicles, each counted once, in flat memory where they are in order.
+#[derive(Debug, Default)]
+struct Counted {
+    seen: Spans,
+    count: u64,
+}
+
+impl Counted {
+    fn add(&mut self, vehicle: u64) {
+        self.count += u64::from(self.seen.add(vehicle, 0).is_ok());
+    }
+}
+
 /// How many flights each vehicle makes, as the rows of a table say that may be some of all.
 #[derive(Debug, Default)]
 struct SeenFlights {
@@ -137,9 +150,9 @@ struct SeenFlights {
     /// At least so many.
     least: u64,
     unclear: bool,
-    vehicles: HashSet<u64>,
+    vehicles: Counted,
     /// Those of them whose first flight there is.
-    begun: HashSet<u64>,
+    begun: Counted,
 }
 
 impl SeenFlights {
@@ -153,9 +166,9 @@ impl SeenFlights {
         let whole = |place: usize| Column::run_named(row[place]?);
         let (run, vehicle, flight) = (whole(0)?, whole(1)?, whole(2)?);
         self.least = self.least.max(flight.checked_add(1)?);
-        self.vehicles.insert(vehicle);
+        self.vehicles.add(vehicle);
         if flight == 0 {
-            self.begun.insert(vehicle);
+            self.begun.add(vehicle);
         }
         let before = run.checked_sub(flight)?;
         if vehicle == 0 {
@@ -175,7 +188,7 @@ impl SeenFlights {
 
     /// That vehicles have no first flight here, if some have none.
     fn left_out(&self) -> Option<String> {
-        let (all, begun) = (self.vehicles.len(), self.begun.len());
+        let (all, begun) = (self.vehicles.count, self.begun.count);
         (begun < all).then(|| {
             format!(
                 "the first flight, flight 0, of {} of {all} vehicles is not in the table: these vehicles are left out, for of each vehicle \

@@ -15,7 +15,7 @@ use super::{
     of_parquet::{names, numbers, open, unread, unread_codec},
     places,
 };
-use crate::{column::Column, stored::read};
+use crate::{column::Column, spans::Spans, stored::read};
 
 /// A run that has two rows.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -38,29 +38,6 @@ fn told([one, other]: &[PathBuf; 2]) -> String {
     format!("{} and {} both have", one.display(), other.display())
 }
 
-/// Runs of a model that were seen, as spans that one file has: the first of each, with the last and the file. Runs in their order need the
-/// memory of one span a file.
-#[derive(Clone, Debug, Default)]
-struct Seen(BTreeMap<u64, (u64, usize)>);
-
-impl Seen {
-    /// Adds a run of a file, or returns the file that has had it.
-    fn add(&mut self, run: u64, file: usize) -> Result<(), usize> {
-        let before = self.0.range(..=run).next_back().map(|(first, span)| (*first, *span));
-        let first = match before {
-            Some((_, (last, there))) if run <= last => return Err(there),
-            Some((first, (last, there))) if run == last + 1 && there == file => first,
-            Some(_) | None => run,
-        };
-        let after = self.0.get(&(run + 1)).filter(|(_, there)| *there == file).copied();
-        if after.is_some() {
-            self.0.remove(&(run + 1));
-        }
-        self.0.insert(first, (after.map_or(run, |(last, _)| last), file));
-        Ok(())
-    }
-}
-
 impl ForeignTable {
     /// The first run that has two rows, if any has; none in a table that does not say by the columns `model` and `run` which run a row is. A row
     /// of which they do not say it is none of them.
@@ -70,14 +47,14 @@ impl ForeignTable {
     pub(crate) fn twice(&self) -> Result<Option<TwiceError>, ForeignError> {
         let [model, run, _] = Column::first();
         let own = [model, run].map(|column| column.name().to_owned());
-        let mut seen: BTreeMap<String, Seen> = BTreeMap::new();
+        let mut seen: BTreeMap<String, Spans> = BTreeMap::new();
         let mut twice = None;
         for (file, path) in self.files.iter().enumerate() {
             let look = |model: &str, number: Option<f64>| {
                 let run = number.and_then(Column::run_named);
                 let Some(run) = run.filter(|_| !model.trim().is_empty()) else { return };
                 if !seen.contains_key(model) {
-                    seen.insert(model.to_owned(), Seen::default());
+                    seen.insert(model.to_owned(), Spans::default());
                 }
                 if let Some(Err(there)) = seen.get_mut(model).map(|seen| seen.add(run, file))
                     && twice.is_none()
@@ -154,34 +131,4 @@ fn look_csv(
         look(cell(0), number(cell(1)).flatten());
     }
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-    use std::collections::HashMap;
-
-    proptest! {
-        /// Runs in any order, of any files: the first that was seen before is told, with the file that had it.
-        #[test]
-        fn what_was_seen_is_known(runs in prop::collection::vec((0..60_u64, 0..3_usize), 0..80)) {
-            let (mut seen, mut expected) = (Seen::default(), HashMap::new());
-            for (run, file) in runs {
-                let there = expected.get(&run).copied();
-                prop_assert_eq!(seen.add(run, file), there.map_or(Ok(()), Err));
-                expected.entry(run).or_insert(file);
-            }
-        }
-
-        /// In their order, or the other way round, runs of a file are one span.
-        #[test]
-        fn runs_in_their_order_need_no_memory(first in 0..1000_u64, count in 1..500_u64, reversed: bool) {
-            let mut seen = Seen::default();
-            let runs = first..first + count;
-            let all: Vec<u64> = if reversed { runs.rev().collect() } else { runs.collect() };
-            all.into_iter().for_each(|run| seen.add(run, 0).unwrap());
-            prop_assert_eq!(seen.0.into_iter().collect::<Vec<_>>(), [(first, (first + count - 1, 0))]);
-        }
-    }
 }

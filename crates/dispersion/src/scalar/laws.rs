@@ -10,7 +10,7 @@ use super::parameters::{Given, Key, Of, Value};
 use super::{MAX, ScalarLaw, ScalarLawError};
 use crate::incomplete_beta::IncompleteBeta;
 use crate::normal::{LN_ROOT_TAU, above, below, score};
-use crate::scaled::power_of_two;
+use crate::scaled::root_of_squares;
 use crate::truncated_draw::Truncated;
 use crate::truncated_normal::WindowError;
 
@@ -680,10 +680,12 @@ impl Law for Triangular {
 
     fn deviation(&self) -> f64 {
         let (p, q) = (self.mode - self.low, self.high - self.mode);
-        let unit = power_of_two(p.max(q));
-        let (p, q) = (p / unit, q / unit);
         // A sum of terms that are not negative.
-        unit * (p * p + p * q + q * q).sqrt() / (3.0 * SQRT_2)
+        let root = root_of_squares(p.max(q), |unit| {
+            let (p, q) = (p / unit, q / unit);
+            p * p + p * q + q * q
+        });
+        root / (3.0 * SQRT_2)
     }
 
     fn square_moments(&self) -> (f64, f64) {
@@ -1036,8 +1038,8 @@ impl Law for Samples {
     }
 
     fn deviation(&self) -> f64 {
-        let unit = power_of_two(self.reach(0.0));
-        unit * mean_and_variance(self.values.iter().map(|x| x / unit)).1.sqrt()
+        let in_unit = |unit| mean_and_variance(self.values.iter().map(|x| x / unit)).1;
+        root_of_squares(self.reach(0.0), in_unit)
     }
 
     fn square_moments(&self) -> (f64, f64) {

@@ -168,8 +168,8 @@ impl Region {
     #[must_use]
     pub fn containment(&self, body: &MassProperties) -> Containment {
         match &self.0 {
-            Kind::Ellipsoid { .. } => {
-                if self.room(body) >= -self.rounding(body) {
+            Kind::Ellipsoid { pose, semi_axes, .. } => {
+                if self.room(body) >= -rounding(body, pose, semi_axes) {
                     Containment::Possible
                 } else {
                     Containment::Impossible
@@ -177,7 +177,7 @@ impl Region {
             }
             Kind::Box { pose, half_sides } => {
                 let local = Local::of(body, pose);
-                if local.room_in_box(half_sides) < -self.rounding(body) {
+                if local.room_in_box(half_sides) < -rounding(body, pose, half_sides) {
                     return Containment::Impossible;
                 }
                 let inside = |x: &Vector3<f64>| (0..3).all(|i| x[i].abs() <= half_sides[i]);
@@ -266,26 +266,20 @@ impl Region {
         }
     }
 
-    /// What rounding may change the room of an ellipsoid or a box by: of coordinates far from the origin of the body axes it
-    /// is more, in parts of the thickness of the region.
-    fn rounding(&self, body: &MassProperties) -> f64 {
-        let (middle, thickness) = match &self.0 {
-            Kind::Ellipsoid { pose, semi_axes, .. } => (pose.translation.vector, semi_axes.min()),
-            Kind::Box { pose, half_sides } => (pose.translation.vector, half_sides.min()),
-            // It takes account of that itself.
-            Kind::Hull(_) => return RELATIVE_TOLERANCE,
-        };
-        let centre = body.mass_centre_m();
-        let moved = RELATIVE_TOLERANCE * (centre.norm() + middle.norm()) / thickness;
-        // Of (c + δ)², c being at most one where a room is near zero.
-        RELATIVE_TOLERANCE + moved * (2.0 + moved)
-    }
-
     /// The points that a hull is looked at by, if it is one: of many those that lie farthest out in some direction.
     #[must_use]
     pub fn outer_points_m(&self) -> Option<&[Vector3<f64>]> {
         if let Kind::Hull(hull) = &self.0 { Some(hull.outer()) } else { None }
     }
+}
+
+/// What rounding may change the room of an ellipsoid or a box by: of coordinates far from the origin of the body axes it is
+/// more, in parts of the thickness of the region. A hull takes account of that itself.
+fn rounding(body: &MassProperties, pose: &Isometry3<f64>, half: &Vector3<f64>) -> f64 {
+    let far = body.mass_centre_m().norm() + pose.translation.vector.norm();
+    let moved = RELATIVE_TOLERANCE * far / half.min();
+    // Of (c + δ)², c being at most one where a room is near zero.
+    RELATIVE_TOLERANCE + moved * (2.0 + moved)
 }
 
 /// A body per unit of its mass, in the frame of a region.
