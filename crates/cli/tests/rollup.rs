@@ -116,6 +116,34 @@ fn what_is_constant_correlates_with_nothing() {
     }
 }
 
+/// The three parts that add most to a variance stand by name, and all others together; what is constant has no line.
+#[test]
+fn parts_stand_by_what_they_add() {
+    let shell = Scratch::new();
+    let mut rows = String::from("name,mass_kg,sigma_mass_kg,cx,cy,cz,sigma_centre_x_m,shape\n");
+    // Variances of 1, 4, 9, 16, 25 and 36 kg², and one part alone moves.
+    for (i, name) in ["a", "b", "c", "d", "e", "f"].iter().enumerate() {
+        let moved = if *name == "b" { "0.1" } else { "" };
+        rows += &format!("{name},100,{},0,0,0,{moved},point\n", i + 1);
+    }
+    fs::write(shell.path("parts.csv"), &rows).unwrap();
+    let out = shell.rollup(&["parts.csv", "-n", "0"]);
+    let lines: Vec<&str> =
+        out.lines().skip_while(|l| !l.starts_with("which parts")).skip(1).take(3).collect();
+    let mass = "  mass_kg          f 40 %, e 27 %, d 18 %, 3 others 15 %";
+    assert_eq!(lines, [mass, "  mass_centre_1_m  b 100 %", ""], "{out}");
+    // Of four, the last is named; of one, nothing is said.
+    for (parts, line) in [(5, "d 53 %, c 30 %, b 13 %, a 3 %"), (3, "b 80 %, a 20 %")] {
+        let some: Vec<&str> = rows.lines().take(parts).collect();
+        fs::write(shell.path("parts.csv"), some.join("\n")).unwrap();
+        let out = shell.rollup(&["parts.csv", "-n", "0"]);
+        assert!(out.contains(&format!("  mass_kg          {line}\n")), "{out}");
+    }
+    fs::write(shell.path("parts.csv"), rows.lines().take(2).collect::<Vec<_>>().join("\n"))
+        .unwrap();
+    assert!(!shell.rollup(&["parts.csv", "-n", "0"]).contains("which parts"));
+}
+
 /// The row of the paper, in its own signs, to its digits; its Izz is 0.29 from the sum of its own parts.
 #[test]
 fn the_published_example_comes_out() {
@@ -140,6 +168,12 @@ fn the_published_example_comes_out() {
         let deviation = found["first_order"]["deviation"][i].as_f64().unwrap();
         assert!((value - printed[0][i]).abs() <= 0.5001 * digits[i], "{i}: {value}");
         assert!((deviation - printed[1][i]).abs() <= 0.5001e-4, "{i}: {deviation}");
+    }
+    // 1.7308² and 1.2416² kg².
+    for (place, part, share) in [(0, "2nd Part", 0.660_240), (1, "Widget", 0.339_760)] {
+        assert_eq!(found["contributions"][place]["part"], part);
+        let of_mass = found["contributions"][place]["share"][0].as_f64().unwrap();
+        assert!((of_mass - share).abs() < 1e-6, "{part}: {of_mass}");
     }
     assert_eq!(found["drawn"]["impossible"], 0);
     assert!(found["drawn"]["naive"]["impossible_part"].as_f64().unwrap() > 18_000.0);

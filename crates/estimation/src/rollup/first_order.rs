@@ -49,10 +49,24 @@ impl FirstOrder {
         let whole = MassProperties::combined(bodies.iter().map(|body| body.nominal))?;
         let mut covariance = SMatrix::zeros();
         for body in bodies {
-            let derivative = derivative(&whole, &body.nominal);
-            covariance += derivative * body.covariance * derivative.transpose();
+            covariance += body.carried_to(&whole);
         }
         Ok(Self::new(whole, (covariance + covariance.transpose()) * 0.5))
+    }
+
+    /// What this body, as one of the independent bodies of a nominal whole, adds to the covariance of the ten of the whole:
+    /// J C Jᵀ.
+    fn carried_to(&self, whole: &MassProperties) -> SMatrix<f64, 10, 10> {
+        let derivative = derivative(whole, &self.nominal);
+        derivative * self.covariance * derivative.transpose()
+    }
+
+    /// What this body, as one of the independent bodies of a nominal whole, adds to the variances of the ten of the whole,
+    /// in squares of their units. Those of all its bodies sum to the variances of [`combined`](Self::combined).
+    #[must_use]
+    pub fn variances_in(&self, whole: &MassProperties) -> [f64; 10] {
+        let added = self.carried_to(whole);
+        std::array::from_fn(|i| added[(i, i)].max(0.0))
     }
 
     /// The ten nominal numbers, as [`TenParameters::COLUMNS`].

@@ -411,6 +411,21 @@ proptest! {
         prop_assert_eq!(&Assembly::new(rows).unwrap(), &tree);
     }
 
+    /// Without the deviations of a part, the variance of the whole is less by the share of that part.
+    #[test]
+    fn a_share_is_what_a_part_adds(parts in prop::collection::vec(any_part(0.2), 1..5)) {
+        let of: Vec<FirstOrder> = parts.iter().map(|p| p.first_order().clone()).collect();
+        let variances = |of: &[_]| FirstOrder::combined(of).unwrap().covariance().diagonal();
+        for (place, (_, shares)) in flat(&parts).variance_shares().enumerate() {
+            let mut fixed = of.clone();
+            fixed[place] = FirstOrder::new(*of[place].nominal(), SMatrix::zeros());
+            let (all, left) = (variances(&of), variances(&fixed));
+            let same = |i: usize| (shares[i].unwrap_or(0.0) * all[i] - (all[i] - left[i])).abs() <= 1e-9 * all[i];
+            prop_assert!((0..10).all(same), "{shares:?}: {all:?} {left:?}");
+            prop_assert!((0..10).all(|i: usize| shares[i].is_some() == (all[i] > 0.0)));
+        }
+    }
+
     /// In every draw a body, whatever is stated.
     #[test]
     fn every_draw_is_a_body(parts in prop::collection::vec(any_part(1.0), 1..4), wide in 0.0..3.0f64) {

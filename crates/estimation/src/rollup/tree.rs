@@ -115,6 +115,49 @@ impl Assembly {
         &self.nodes[self.nodes.len() - 1].first_order
     }
 
+    /// The share of each part in the variances of the ten of the whole, to first order, in the order of the names.
+    ///
+    /// Parts are independent of each other, so that the shares of a number sum to 1. A number that does not vary has none.
+    ///
+    /// ```
+    /// use gyradius_estimation::{Assembly, AssemblyPart, AssemblyRow, PartStatement};
+    /// use gyradius_inertia::InertiaMatrix;
+    /// use nalgebra::{Matrix3, UnitQuaternion};
+    ///
+    /// let part = |name: &str, mass_kg: f64, sigma_kg: f64| {
+    ///     let mut deviations = [0.0; 10];
+    ///     deviations[0] = sigma_kg;
+    ///     let part = AssemblyPart::new(PartStatement {
+    ///         mass_kg,
+    ///         mass_centre_m: [0.0; 3],
+    ///         inertia: InertiaMatrix::new(Matrix3::identity())?,
+    ///         attitude: UnitQuaternion::identity(),
+    ///         deviations,
+    ///         inertia_follows_mass: false,
+    ///     })?;
+    ///     Ok::<_, Box<dyn std::error::Error>>(AssemblyRow { name: name.into(), parent: Some("bus".into()), part: Some(part) })
+    /// };
+    /// let bus = AssemblyRow { name: "bus".into(), parent: None, part: None };
+    /// let whole = Assembly::new([bus, part("battery", 30.0, 0.3)?, part("tank", 50.0, 0.4)?])?;
+    /// let mass: Vec<_> = whole.variance_shares().map(|(name, shares)| (name, shares[0])).collect();
+    /// // σ² = 0.09 kg² + 0.16 kg².
+    /// assert!((mass[0].1.unwrap_or_default() - 0.36).abs() < 1e-12);
+    /// assert!((mass[1].1.unwrap_or_default() - 0.64).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn variance_shares(&self) -> impl ExactSizeIterator<Item = (&str, [Option<f64>; 10])> {
+        let whole = self.first_order().nominal();
+        let added = self.parts().map(|(name, part)| (name, part.first_order().variances_in(whole)));
+        let added: Vec<(&str, [f64; 10])> = added.collect();
+        // Of what was added, for the sum over levels may differ in the last digits.
+        let sums: [f64; 10] =
+            std::array::from_fn(|i| added.iter().map(|(_, variances)| variances[i]).sum());
+        added.into_iter().map(move |(name, variances)| {
+            let share = |i: usize| Some(variances[i] / sums[i]).filter(|share| share.is_finite());
+            (name, std::array::from_fn(share))
+        })
+    }
+
     /// Everything in the tree from the whole down: depth, name, whether it is a part, and its ten to first order.
     pub fn rows(&self) -> impl Iterator<Item = (usize, &str, bool, &FirstOrder)> {
         let mut down = vec![self.nodes.len() - 1];

@@ -22,6 +22,7 @@ struct Document<'a> {
     first_order: Nominal<'a>,
     /// Null where nothing was drawn.
     drawn: Option<Drawn>,
+    contributions: Vec<Contribution<'a>>,
     assemblies: Vec<Nominal<'a>>,
     findings: Vec<Finding<'a>>,
     passed_over: &'a [String],
@@ -33,6 +34,13 @@ struct Nominal<'a> {
     nominal: [f64; 10],
     deviation: [f64; 10],
     covariance: [[f64; 10]; 10],
+}
+
+/// Share of a part in the variances of the whole, to first order; null where a number does not vary.
+#[derive(Serialize)]
+struct Contribution<'a> {
+    part: &'a str,
+    share: [Option<f64>; 10],
 }
 
 impl<'a> Nominal<'a> {
@@ -144,6 +152,10 @@ pub(super) fn text(shown: &Shown<'_>) -> serde_json::Result<String> {
         units: TEN_UNITS,
         first_order: Nominal::new(assembly.name(), assembly.first_order()),
         drawn,
+        contributions: assembly
+            .variance_shares()
+            .map(|(part, share)| Contribution { part, share })
+            .collect(),
         assemblies: inside.map(|(_, name, _, moments)| Nominal::new(name, moments)).collect(),
         findings: findings.chain(totals).collect(),
         passed_over: shown.table.passed_over(),

@@ -26,6 +26,7 @@ fn write_text(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
     writeln!(out, "{head}, together {}\n", assembly.name())?;
     numbers(out, shown)?;
     correlations(out, shown)?;
+    contributions(out, shown)?;
     assemblies(out, shown)?;
     notes(out, shown)
 }
@@ -86,6 +87,35 @@ fn correlations(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
         let pairs = (0..10).flat_map(|i| (0..i).map(move |j| (i, j)));
         let most = pairs.map(gap).fold(0.0, f64::max);
         writeln!(out, "the correlations by first order differ from these by up to {most:.2}")?;
+    }
+    Ok(())
+}
+
+/// Which parts the variance of each number comes from, where there are several.
+fn contributions(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
+    let parts: Vec<(&str, [Option<f64>; 10])> = shown.rollup.assembly().variance_shares().collect();
+    if parts.len() < 2 || parts.iter().all(|(_, shares)| shares.iter().all(Option::is_none)) {
+        return Ok(());
+    }
+    writeln!(out, "\nwhich parts the variance (σ²) by first order comes from")?;
+    for i in 0..10 {
+        let share =
+            |(name, shares): &(&str, [Option<f64>; 10])| Some((shares[i]?, name.to_string()));
+        let mut of: Vec<(f64, String)> = parts.iter().filter_map(share).collect();
+        // The order of the names where shares are the same.
+        of.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let rest = of.split_off(of.partition_point(|(share, _)| *share >= 0.01).min(3));
+        let total: f64 = rest.iter().map(|(share, _)| share).sum();
+        let others = rest.iter().filter(|(share, _)| *share > 0.0).count();
+        if total >= 0.005 {
+            let name = if others == 1 { rest[0].1.clone() } else { format!("{others} others") };
+            of.push((total, name));
+        }
+        let texts: Vec<String> =
+            of.iter().map(|(share, name)| format!("{name} {:.0} %", 100.0 * share)).collect();
+        if !texts.is_empty() {
+            writeln!(out, "  {:<16} {}", TenParameters::COLUMNS[i], texts.join(", "))?;
+        }
     }
     Ok(())
 }
