@@ -102,6 +102,12 @@ pub enum FileProblem {
     /// Sixteen bits a character.
     #[error("it is encoded in UTF-16: save it as UTF-8")]
     Utf16,
+    /// A table in Parquet.
+    #[error("it is a Parquet file, which is not read here: save the table as CSV")]
+    Parquet,
+    /// An archive, as a spreadsheet is.
+    #[error("it is a ZIP archive, as spreadsheets (.xlsx, .ods) are: save the table as CSV")]
+    Zip,
     /// Zero bytes in it.
     #[error("it is binary, not text")]
     Binary,

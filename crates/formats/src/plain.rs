@@ -3,7 +3,7 @@
 
 use crate::{
     new_file::{NewFile, WriteError, there},
-    text::is_utf16,
+    text::no_text,
 };
 use std::{
     fs::{self, File, Permissions},
@@ -26,15 +26,11 @@ pub fn read_text(path: &Path, most_bytes: u64) -> io::Result<String> {
         let problem = format!("it is larger than {} MiB", most_bytes >> 20);
         return Err(io::Error::new(io::ErrorKind::FileTooLarge, problem));
     }
-    let sixteen = is_utf16(&bytes);
-    String::from_utf8(bytes).ok().filter(|_| !sixteen).ok_or_else(|| {
-        let problem = if sixteen {
-            "it is encoded in UTF-16: save it as UTF-8"
-        } else {
-            "it is not UTF-8: save it as UTF-8"
-        };
-        io::Error::new(io::ErrorKind::InvalidData, problem)
-    })
+    let no_text = no_text(&bytes).map(|problem| problem.to_string());
+    let text = no_text.map_or(Ok(bytes), Err).and_then(|bytes| {
+        String::from_utf8(bytes).map_err(|_| "it is not UTF-8: save it as UTF-8".to_owned())
+    });
+    text.map_err(|problem| io::Error::new(io::ErrorKind::InvalidData, problem))
 }
 
 /// Whether two paths lead to one file, by links of either kind too; not where one of them leads to none.
@@ -232,6 +228,11 @@ mod tests {
         fs::write(&path, b"a = \"\xe9\"").unwrap();
         let message = read_text(&path, 1 << 20).unwrap_err().to_string();
         assert_eq!(message, "it is not UTF-8: save it as UTF-8");
+        for (bytes, told) in [(&b"PAR1\x15\0"[..], "Parquet"), (b"PK\x03\x04\x14\0", ".xlsx")] {
+            fs::write(&path, bytes).unwrap();
+            let message = read_text(&path, 1 << 20).unwrap_err().to_string();
+            assert!(message.contains(told), "{message}");
+        }
     }
 
     #[test]

@@ -45,11 +45,8 @@ impl Text {
         if body.trim_ascii().is_empty() {
             return Err(FileProblem::Empty.into());
         }
-        if is_utf16(body) {
-            return Err(FileProblem::Utf16.into());
-        }
-        if body.contains(&0) {
-            return Err(FileProblem::Binary.into());
+        if let Some(problem) = no_text(body) {
+            return Err(problem.into());
         }
         // Other encodings are allowed to tables alone, whose rows are lines.
         if latin && body.trim_ascii().contains(&b'\r') && !body.contains(&b'\n') {
@@ -107,8 +104,24 @@ impl Text {
     }
 }
 
+/// Why bytes are no text in eight bits a character, if they are not.
+pub(crate) fn no_text(bytes: &[u8]) -> Option<FileProblem> {
+    if is_utf16(bytes) {
+        return Some(FileProblem::Utf16);
+    }
+    bytes.contains(&0).then(|| {
+        if bytes.starts_with(b"PAR1") {
+            FileProblem::Parquet
+        } else if bytes.starts_with(b"PK\x03\x04") {
+            FileProblem::Zip
+        } else {
+            FileProblem::Binary
+        }
+    })
+}
+
 /// Whether bytes are sixteen bits a character: by their mark, or a zero in every other of the first bytes.
-pub(crate) fn is_utf16(bytes: &[u8]) -> bool {
+fn is_utf16(bytes: &[u8]) -> bool {
     let zeros = bytes
         .iter()
         .position(|b| *b == 0)
@@ -139,6 +152,9 @@ mod tests {
         assert!(matches!(problem(b"\0<\0r\0o"), FileProblem::Utf16));
         assert!(matches!(problem(b"\x7fELF\x02\x01\0"), FileProblem::Binary));
         assert!(matches!(problem(b"a\0"), FileProblem::Binary));
+        assert!(matches!(problem(b"PAR1\x15\0"), FileProblem::Parquet));
+        assert!(matches!(problem(b"PK\x03\x04\x14\0"), FileProblem::Zip));
+        assert!(Text::new(b"PAR1,PK\n1,2\n", false).is_ok());
         let refusal = Text::new(b"a\nb\xe9\n", false).unwrap_err();
         assert!(matches!(refusal.problem, FileProblem::NotUtf8));
         assert_eq!(refusal.line, Some(2));
