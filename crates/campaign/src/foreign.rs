@@ -35,7 +35,17 @@ pub struct ForeignTable {
 }
 
 /// How files begin that hold tables in other forms, as draws are written.
-const OTHER_FORMS: [(&[u8], &str); 2] = [(b"{\"", "JSON"), (b"\x93NUM", "an array of NumPy")];
+const OTHER_FORMS: [(&[u8], &str); 9] = [
+    (b"{\"", "JSON"),
+    (b"\x93NUM", "an array of NumPy"),
+    (b"PK\x03\x04", "a ZIP archive, as spreadsheets (.xlsx, .ods) and .npz are"),
+    (b"\x89HDF", "HDF5"),
+    (b"ARRO", "Arrow or Feather"),
+    (b"\x1f\x8b", "compressed (gzip)"),
+    (b"\x28\xb5\x2f\xfd", "compressed (zstd)"),
+    (b"\x80\x04", "a pickle of Python"),
+    (b"\x80\x05", "a pickle of Python"),
+];
 
 #[derive(Clone, Debug)]
 enum Form {

@@ -270,6 +270,13 @@ fn tables_in_other_forms_are_named() {
         let said = scratch.done(&["verdict", &file, "--require", "i11 <= 5 in 90 % at 90 %"], 2);
         assert!(said.contains(&format!("{file}: {form}, and CSV and Parquet are read")), "{said}");
     }
+    for (start, form) in
+        [(&b"PK\x03\x04\x14\0"[..], ".xlsx"), (b"\x1f\x8b\x08\0", "compressed (gzip)")]
+    {
+        fs::write(scratch.path("runs.csv"), start).unwrap();
+        let said = scratch.done(&["verdict", "runs.csv", "--require", "y <= 5 in 90 % at 90 %"], 2);
+        assert!(said.contains(form) && said.contains("CSV and Parquet are read"), "{said}");
+    }
 }
 
 /// The page names every key of the JSON.
