@@ -4,7 +4,7 @@ use crate::units::squeezed;
 
 /// What is written of standard deviations, wherever it stands, and in words of their own.
 const MARKS: [&str; 5] = ["sigma", "percent", "%", "σ", "±"];
-const WORDS: [&str; 25] = [
+const WORDS: [&str; 38] = [
     "sd",
     "std",
     "stdev",
@@ -17,9 +17,22 @@ const WORDS: [&str; 25] = [
     "cov",
     "cv",
     "unc",
+    "uncert",
     "uncertainty",
     "tol",
     "tolerance",
+    "delta",
+    "pm",
+    "plusminus",
+    "range",
+    "scatter",
+    "variation",
+    "halfwidth",
+    "noise",
+    "rsd",
+    "1s",
+    "2s",
+    "3s",
     "pct",
     "err",
     "error",
@@ -44,9 +57,12 @@ pub(crate) fn has_typed_mark(heading: &str) -> bool {
     plain.contains("+/-") || plain.contains("+-")
 }
 
-/// Whether it has a word for it.
+/// Whether it has a word for it, or two that are one: `half width`.
 pub(crate) fn has_word(heading: &str) -> bool {
-    words(&parted(heading)).any(|word| WORDS.contains(&word))
+    let parted = parted(heading);
+    let words: Vec<&str> = words(&parted).filter(|word| !word.is_empty()).collect();
+    let is_known = |words: &[&str]| WORDS.contains(&words.concat().as_str());
+    words.chunks(1).any(is_known) || words.windows(2).any(is_known)
 }
 
 /// In small letters, with a blank before each capital after a small letter, where a word begins: `massSD` becomes `mass sd`.
@@ -73,8 +89,9 @@ pub(crate) fn beside_word(word: &str) -> impl Iterator<Item = &str> {
 
 /// Whether it speaks of nothing else, so that nobody knows of which number: `uncertainty`, `tolerance [kg]`.
 pub(crate) fn is_alone(heading: &str) -> bool {
-    const SURE: [&str; 12] = [
+    const SURE: [&str; 13] = [
         "uncertainty",
+        "uncert",
         "unc",
         "tolerance",
         "tol",

@@ -167,6 +167,15 @@ pub enum PartsProblem {
         /// The heading.
         heading: String,
     },
+    /// A column that looks like a standard deviation of a size of a shape.
+    #[error(
+        "column {heading:?} speaks of how far a size may be off, and sizes have no standard deviation here: it must be left out, \
+         and what it means for the inertia stands in sigma_ or _percent of ixx, moments and so on"
+    )]
+    SizeDeviation {
+        /// The heading.
+        heading: String,
+    },
     /// A column that would change the numbers of the row, and is not read.
     #[error("column {heading:?} says {value:?}: {}", because(*.what))]
     Unread {

@@ -93,6 +93,8 @@ pub(crate) enum Heading {
     Signed,
     /// It looks like a standard deviation, and is none.
     NoDeviation,
+    /// It looks like a standard deviation of a size of a shape, which has none.
+    SizeDeviation,
     /// It may hold something that would change the numbers of the row, and that is not read.
     Unread(Unread),
     Other,
@@ -231,6 +233,8 @@ impl Heading {
             Self::NoDeviation
         } else if is_unread_product(text) {
             Self::Product
+        } else if names_size(text) && spread::has_word(text) {
+            Self::SizeDeviation
         } else {
             size(text).unwrap_or(Self::Other)
         }
@@ -239,7 +243,7 @@ impl Heading {
     /// What it means in a table without shapes.
     pub(crate) fn without_shapes(self) -> Self {
         match self {
-            Self::Size(..) | Self::SizeUnit(..) => Self::Other,
+            Self::Size(..) | Self::SizeUnit(..) | Self::SizeDeviation => Self::Other,
             other => other,
         }
     }
@@ -255,6 +259,14 @@ pub(crate) fn is_spread(text: &str) -> bool {
     let is_name = |name: &str| name.len() > 1 && group(name).is_some();
     let is_one_word = || spread::words(&small).flat_map(spread::beside_word).any(is_name);
     (spread::has_word(text) && names_number) || is_one_word() || is_difference(&small)
+}
+
+/// Whether a heading has the name of a size of a shape, and other words beside it.
+fn names_size(text: &str) -> bool {
+    let parted = spread::parted(text);
+    let words: Vec<&str> = spread::words(&parted).filter(|word| !word.is_empty()).collect();
+    let is_size = |words: &[&str]| known_size(&words.concat()).is_some();
+    (1..=3).any(|count| words.windows(count).any(is_size))
 }
 
 /// Whether it is, in small letters, the name of one of the ten after what stands for a difference or an uncertainty:
@@ -327,13 +339,16 @@ fn length<T>(
 
 /// A size of a shape: `radius_mm`, `Height [in]`.
 fn size(text: &str) -> Option<Heading> {
-    let name = |size: &'static str| size.strip_suffix("_m").unwrap_or(size);
-    let known =
-        |plain: &str| Shape::SIZES.iter().copied().find(|size| squeezed(name(size)) == plain);
-    match length(text, known)? {
+    match length(text, known_size)? {
         (size, Ok(unit)) => Some(Heading::Size(size, unit)),
         (size, Err(bad)) => Some(Heading::SizeUnit(size, bad)),
     }
+}
+
+/// The size of a shape that is written so without its unit.
+fn known_size(plain: &str) -> Option<&'static str> {
+    let name = |size: &'static str| size.strip_suffix("_m").unwrap_or(size);
+    Shape::SIZES.iter().copied().find(|size| squeezed(name(size)) == plain)
 }
 
 /// A number of the ten or its deviation: `mass_kg`, `sigma_ixx`, `mass_sigma_kg`, `moments_percent`.
@@ -395,86 +410,4 @@ pub(crate) fn group(name: &str) -> Option<Group> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn headings_are_known_in_every_spelling() {
-        let value = |i, si| Heading::Column(Column::Value(i, si));
-        let sigma = |i, n, si| Heading::Column(Column::Deviation(Group(i, n), Scale::Unit(si)));
-        let size = |name, si| Heading::Size(name, si);
-        let percent = |i, n| Heading::Column(Column::Deviation(Group(i, n), Scale::Percent));
-        for (text, expected) in [
-            ("mass", value(0, None)),
-            ("Mass [g]", value(0, Some(1e-3))),
-            ("Cx", value(1, None)),
-            ("centre_y_mm", value(2, Some(1e-3))),
-            ("Mass center Z (in)", value(3, Some(0.0254))),
-            ("Ixx", value(4, None)),
-            ("i23_kg_m2", value(9, Some(1.0))),
-            ("mass_centre_2_m", value(2, Some(1.0))),
-            ("sigma_mass", sigma(0, 1, None)),
-            ("sigma_Cz", sigma(3, 1, None)),
-            ("centre_sigma_mm", sigma(1, 3, Some(1e-3))),
-            ("sigma_Ixy", sigma(7, 1, None)),
-            ("moments_percent", percent(4, 3)),
-            ("mass (%)", percent(0, 1)),
-            ("sigma_products_kg_m2", sigma(7, 3, Some(1.0))),
-            ("radius_m", size("radius_m", Some(1.0))),
-            ("Radius [in]", size("radius_m", Some(0.0254))),
-            ("inner radius", size("inner_radius_m", None)),
-            ("Height above deck", Heading::Other),
-            ("heights", Heading::Other),
-            ("sigma_mess", Heading::NoDeviation),
-            ("mass_std", Heading::NoDeviation),
-            ("Mass (1σ)", Heading::NoDeviation),
-            ("mass +/-", Heading::NoDeviation),
-            ("Ixx (+/-) [kg m2]", Heading::NoDeviation),
-            ("-Ixy", Heading::Signed),
-            ("-sigma_Ixy", Heading::Signed),
-            ("Ixx uncertainty [kg m2]", Heading::NoDeviation),
-            ("uncertainty", Heading::NoDeviation),
-            ("MassSD", Heading::NoDeviation),
-            ("IxxError [kg m2]", Heading::NoDeviation),
-            ("SDmass", Heading::NoDeviation),
-            ("massTol", Heading::NoDeviation),
-            ("mass_precision", Heading::NoDeviation),
-            ("se_mass", Heading::NoDeviation),
-            ("varx", Heading::Other),
-            ("Tolerance [kg]", Heading::NoDeviation),
-            ("tolerance class", Heading::Other),
-            ("kx_mm", Heading::Column(Column::Gyration(0, Some(1e-3)))),
-            ("Kyy", Heading::Column(Column::Gyration(1, None))),
-            ("Radius of gyration Z [m]", Heading::Column(Column::Gyration(2, Some(1.0)))),
-            ("kg", Heading::Other),
-            ("k2 screws", Heading::Other),
-            ("Qty", Heading::Unread(Unread::Count)),
-            ("quantity [-]", Heading::Unread(Unread::Count)),
-            ("No. off", Heading::Unread(Unread::Count)),
-            ("part number", Heading::Other),
-            ("roll_deg", Heading::Unread(Unread::Turn)),
-            ("MGA %", Heading::Unread(Unread::Growth)),
-            ("mass growth allowance", Heading::Unread(Unread::Growth)),
-            ("quat_w", Heading::Column(Column::Attitude(3))),
-            ("basic mass", Heading::Other),
-            ("+/-", Heading::NoDeviation),
-            ("error", Heading::NoDeviation),
-            ("function", Heading::Other),
-            ("Mass [Mg]", value(0, Some(1000.0))),
-            ("supplier", Heading::Other),
-            ("centre_m", Heading::Other),
-            ("POIconv", Heading::Column(Column::Products)),
-            ("Ipoint", Heading::Column(Column::Point)),
-        ] {
-            let found = Heading::of(text);
-            let same = match (&found, &expected) {
-                (
-                    Heading::Column(Column::Value(i, Some(a))),
-                    Heading::Column(Column::Value(j, Some(b))),
-                ) => i == j && (a / b - 1.0).abs() < 1e-15,
-                (a, b) => a == b,
-            };
-            assert!(same, "{text}: {found:?}");
-        }
-    }
-}
+mod tests;

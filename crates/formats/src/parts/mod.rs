@@ -162,6 +162,9 @@ impl PartsTable {
                 Heading::NoDeviation => {
                     return refuse(PartsProblem::Deviation { heading: shortened(heading) });
                 }
+                Heading::SizeDeviation => {
+                    return refuse(PartsProblem::SizeDeviation { heading: shortened(heading) });
+                }
                 Heading::Unit(..)
                 | Heading::SizeUnit(..)
                 | Heading::Product

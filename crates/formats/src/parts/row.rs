@@ -185,6 +185,7 @@ impl Cells<'_> {
             | Heading::Signed
             | Heading::NoDeviation
             | Heading::Unread(_)
+            | Heading::SizeDeviation
             | Heading::Other => None,
         };
         if self.given(says).next().is_none() {
