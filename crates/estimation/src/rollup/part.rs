@@ -23,8 +23,10 @@ const ROUNDING: f64 = 1e-6;
 const MOST: [f64; 3] = [1e30, 1e15, 1e60];
 /// Smallest mass, kg.
 const LEAST_MASS: f64 = 1e-30;
-/// Largest deviation of a mass, in masses.
-const MOST_MASS_DEVIATION: f64 = 10.0;
+/// Largest deviation of a mass, in masses, and of the entries of an inertia, in its traces.
+const MOST_RELATIVE_DEVIATION: f64 = 10.0;
+/// Largest deviation of a coordinate, m.
+const MOST_CENTRE_DEVIATION: f64 = 1e4;
 /// An entry that moves by less than this share of the one that moves most is fixed: its correlations mean nothing.
 const FIXED: f64 = 0.01;
 /// A correlation of entries stated as independent that is worth a word.
@@ -208,7 +210,13 @@ fn check(statement: &PartStatement) -> Result<(), PartError> {
             return Err(PartError::Value { field, value: values[i], most: most(i), unit });
         }
         let value = deviations[i];
-        let most = if i == 0 { MOST_MASS_DEVIATION * mass_kg } else { most(i) };
+        let most = match i {
+            0 => MOST_RELATIVE_DEVIATION * mass_kg,
+            1..=3 => MOST_CENTRE_DEVIATION,
+            // Of what has no inertia, there is a finding.
+            _ if i11 + i22 + i33 > 0.0 => MOST_RELATIVE_DEVIATION * (i11 + i22 + i33),
+            _ => most(i),
+        };
         if !(value >= 0.0 && value <= most) {
             let (field, unit) = (TenParameters::COLUMNS[i], TEN_UNITS[i]);
             return Err(PartError::Deviation { field, value, most, unit });

@@ -248,7 +248,7 @@ impl Cells<'_> {
         for ((size, si), cell) in self.given(of) {
             let mut numbers = Vec::new();
             for word in cell.split([' ', '×', ';', '/']).filter(|word| !word.is_empty()) {
-                let number = Number::parse("size of the shape", word, None)?.value;
+                let number = Number::parse(size, word, None)?.value;
                 numbers.push(Value::from(number * si));
             }
             let one = numbers.len() == 1;
@@ -261,6 +261,13 @@ impl Cells<'_> {
             let mut message = error.to_string();
             if message.starts_with("unknown variant") {
                 message = message.replacen("expected one of ", "expected one of `point`, ", 1);
+            }
+            if message.contains("array of length") || message.contains("sequence") {
+                let given = self.given(of).map(|((size, _), cell)| format!("{size} = {cell:?}"));
+                let given: Vec<String> = given.collect();
+                message += "; given are ";
+                message += &given.join(", ");
+                message += ", and a size of several numbers has them all in one cell, as `1 1 2`";
             }
             PartsProblem::Shape { message }
         })
@@ -328,10 +335,12 @@ impl Cells<'_> {
                 return Err(PartsProblem::Twice { field });
             }
             let value = Number::parse(field, cell, None)?.value * si;
-            if !(value >= 0.0) {
-                return Err(PartsProblem::Value { field, value, allowed: "zero or more" });
+            let moment = mass_kg * value * value;
+            if !(value >= 0.0 && moment.is_finite()) {
+                let allowed = "zero or more, and small enough for a moment of inertia";
+                return Err(PartsProblem::Value { field, value, allowed });
             }
-            found[axis] = Some(mass_kg * value * value);
+            found[axis] = Some(moment);
         }
         if found.iter().all(Option::is_none) {
             return Ok(None);

@@ -174,6 +174,19 @@ fn what_a_row_lacks_is_named() {
             "line 2: a: shape: radius_m = -1.0 m",
         ),
         (
+            "name,mass,cx,cy,cz,shape,radius_m\na,1,0,0,0,sphere,1;5e\n",
+            "line 2: a: radius_m = \"5e\"",
+        ),
+        (
+            "name,mass,cx,cy,cz,shape,sides_m\na,1,0,0,0,box,1 2\n",
+            "line 2: a: shape: invalid length 2, expected an array of length 3; given are sides_m = \"1 2\", and a size of several \
+             numbers has them all in one cell, as `1 1 2`",
+        ),
+        (
+            "name,mass,cx,cy,cz,kx_m,ky_m,kz_m\na,1,0,0,0,1,1e200,1\n",
+            "line 2: a: ky = 1e200: it must be zero or more, and small enough",
+        ),
+        (
             "name,mass,cx,cy,cz,shape,sigma_mass\na,1,0,0,0,point,-1\n",
             "line 2: a: sigma_mass = -1.0: it must be zero or more",
         ),

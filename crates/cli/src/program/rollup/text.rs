@@ -42,7 +42,7 @@ fn numbers(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
     writeln!(out)?;
     for i in 0..10 {
         let name = TenParameters::COLUMNS[i];
-        write!(out, "{name:<16}{:>14}{:>14}", digits(values[i], 7), digits(deviations[i], 5))?;
+        write!(out, "{name:<16} {:>13} {:>13}", digits(values[i], 7), digits(deviations[i], 5))?;
         if let Some(drawn) = shown.draws {
             let m = &drawn.moments;
             let spread = m.spread.as_ref();
@@ -52,7 +52,7 @@ fn numbers(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
             let deviation = spread.map(|s| with_error(s.deviation[i], error(s)));
             let absent = || "-".to_owned();
             let (mean, deviation) = (mean.unwrap_or_else(absent), deviation.unwrap_or_else(absent));
-            write!(out, "{mean:>28}{deviation:>24}")?;
+            write!(out, " {mean:>27} {deviation:>23}")?;
         }
         writeln!(out)?;
     }
