@@ -148,7 +148,8 @@ impl<'t, 'a> Geoms<'t, 'a> {
         };
         if let Some(ends) = ends.filter(|_| LONG.contains(&kind)) {
             let [from, to] = [&ends[..3], &ends[3..]].map(Vector3::from_column_slice);
-            let along = to - from;
+            // The third axis points from the second end to the first, as MuJoCo has it: of a box, that tells how it is rolled.
+            let along = from - to;
             centre = (from + to) * 0.5;
             rotation =
                 from_third_axis(along).ok_or(LinkProblem::Orientation { field: "fromto" })?;

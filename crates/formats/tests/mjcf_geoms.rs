@@ -57,6 +57,15 @@ fn geoms_lie_where_mujoco_has_them() {
             "type='cylinder' size='0.5' fromto='3 2 1 -1 2 1'".to_owned(),
             [(-1.0, 3.0), (1.5, 2.5), (0.5, 1.5)],
         ),
+        // How a box is rolled tells which end is the first: geom_pos, geom_quat and geom_size of MuJoCo 4.0.0.
+        (
+            "type='box' size='0.06' fromto='0 0 0.3 0.1 0.05 -0.1'".to_owned(),
+            [(-0.059114, 0.159114), (-0.060443, 0.110443), (-0.121669, 0.321669)],
+        ),
+        (
+            "type='box' size='0.06' fromto='0.1 0.05 -0.1 0 0 0.3'".to_owned(),
+            [(-0.081342, 0.181342), (-0.083557, 0.133557), (-0.121669, 0.321669)],
+        ),
     ] {
         let text = file("", "", &format!("<geom {geom}/>"));
         assert_eq!(extent(&text), expected, "{geom}");
