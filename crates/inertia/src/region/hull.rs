@@ -1,20 +1,26 @@
 //! The convex hull of points, looked at from all sides.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, SVector, Vector3};
 
-use super::RegionError;
+use super::{DIGITS, RegionError, non_negative};
 use crate::RELATIVE_TOLERANCE;
 
 /// Directions in which a hull is looked at.
 const DIRECTIONS: usize = 400;
 /// What a hull that is flat to this share of its size is stretched by at most.
 const FLAT: f64 = 1e-6;
+/// Of how many points all corners of the hull are found. Of more, those that are seen from the directions are enough: what
+/// has hundreds of them is round.
+const ALL: usize = 400;
+/// Planes that bound a way out, at most; a few do.
+const CUTS: usize = 60;
 
 /// The convex hull of points.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Hull {
     points: Vec<Vector3<f64>>,
-    /// Those of them that are farthest out in some direction, whose hull is a part of the whole.
+    /// Those of them that are farthest out in some direction, and of a few points all other corners: of many points, their
+    /// hull is a part of the whole.
     outer: Vec<Vector3<f64>>,
     /// Directions, and how far the points reach against and along each.
     reach: Vec<(Vector3<f64>, [f64; 2])>,
@@ -46,7 +52,15 @@ impl Hull {
         outer.sort_unstable();
         outer.dedup();
         let outer = outer.into_iter().map(|i| points[i]).collect();
-        Ok(Self { points, outer, reach, size })
+        let mut hull = Self { points, outer, reach, size };
+        for i in 0..if hull.points.len() <= ALL { hull.points.len() } else { 0 } {
+            let point = hull.points[i];
+            // A corner that is seen from between the directions alone.
+            if !hull.holds(&point) {
+                hull.outer.push(point);
+            }
+        }
+        Ok(hull)
     }
 
     pub(super) fn points(&self) -> &[Vector3<f64>] {
@@ -60,6 +74,49 @@ impl Hull {
     /// No two points are farther apart than twice this.
     pub(super) fn size(&self) -> f64 {
         self.size
+    }
+
+    /// Whether a point is a mean of corners.
+    pub(super) fn holds(&self, point: &Vector3<f64>) -> bool {
+        if !(self.size > 0.0) {
+            return self.outer.first() == Some(point);
+        }
+        // Far more than what is told below, for what is plainly outside.
+        let slack = 1e-6 * self.size + RELATIVE_TOLERANCE * point.norm();
+        let is_beyond = |(n, [low, high]): &(Vector3<f64>, [f64; 2])| {
+            let along = n.dot(point);
+            along > high + slack || along < low - slack
+        };
+        !self.reach.iter().any(is_beyond) && self.off(point).norm() <= DIGITS
+    }
+
+    /// What parts a point from the hull, in sizes: r of four with r₀ + r·(q − x)/size ≤ 0 for every q in the hull, and r₀ = |r|²
+    /// ≥ 0; zero of a point in it.
+    fn off(&self, point: &Vector3<f64>) -> SVector<f64, 4> {
+        let place = |x: &Vector3<f64>| {
+            let x = (x - point) / self.size;
+            SVector::<f64, 4>::new(1.0, x.x, x.y, x.z)
+        };
+        let columns: Vec<_> = self.outer.iter().map(place).collect();
+        non_negative::rest(&columns, &SVector::<f64, 4>::new(1.0, 0.0, 0.0, 0.0))
+    }
+
+    /// How far from a point in it the hull ends in a direction: the plane that parts a point outside from it bounds the way,
+    /// and the next point is where it does.
+    pub(super) fn exit(&self, from: &Vector3<f64>, direction: &Vector3<f64>) -> f64 {
+        let mut far = 2.0 * self.size;
+        for _ in 0..CUTS {
+            let rest = self.off(&(from + direction * far));
+            if rest.norm() <= DIGITS {
+                return far;
+            }
+            let step = rest[0] * self.size / rest.fixed_rows::<3>(1).dot(direction);
+            if !(step > 0.0 && step < far) {
+                break;
+            }
+            far -= step;
+        }
+        0.0
     }
 
     /// The least of the conditions ∫ (h − n·x)(n·x + h') dm ≥ 0, over what it would be with all mass in the middle, of a

@@ -20,8 +20,6 @@ const LATTICE: usize = 5;
 const PAIRS: usize = 400;
 /// Digits to which point masses must have the mass properties, relative to the size of the region.
 const DIGITS: f64 = 1e-10;
-/// How often an interval is halved.
-const BISECTIONS: usize = 40;
 /// How far from the mass centre to where a principal axis leaves the region masses are tried.
 const OWN_FRACTIONS: [f64; 4] = [1.0, 0.75, 0.5, 0.25];
 /// How far from the mass centre to a corner of a hull masses are tried.
@@ -200,23 +198,13 @@ impl Region {
                 if hull.room(&local.centre, &local.spread) < -RELATIVE_TOLERANCE {
                     return Containment::Impossible;
                 }
-                let inside = |x: &Vector3<f64>| local.is_in(x, outer, size);
+                let inside = |x: &Vector3<f64>| hull.holds(x);
                 if !inside(&local.centre) {
                     return Containment::Undecided;
                 }
                 if local.is_plain(inside) {
                     return Containment::Possible;
                 }
-                let exit = |n: &Vector3<f64>| {
-                    let (mut low, mut high) = (0.0, 2.0 * size);
-                    for _ in 0..BISECTIONS {
-                        let middle = 0.5 * (low + high);
-                        let is_in = inside(&(local.centre + n * middle));
-                        *(if is_in { &mut low } else { &mut high }) = middle;
-                    }
-                    low
-                };
-                let own = local.on_own_axes(inside, exit);
                 let rays = outer.iter().flat_map(|corner| {
                     FRACTIONS.map(|fraction| local.centre + (corner - local.centre) * fraction)
                 });
@@ -225,7 +213,15 @@ impl Region {
                 let stride = 1 + n * n / (2 * PAIRS);
                 let middles = (0..n).flat_map(|i| (0..i).map(move |j| (i, j))).step_by(stride);
                 let middles = middles.map(|(i, j)| (outer[i] + outer[j]) * 0.5);
-                local.decide(rays.chain(middles).chain(own), size)
+                let corners: Vec<Vector3<f64>> = rays.chain(middles).collect();
+                if local.decide(corners.iter().copied(), size) == Containment::Possible {
+                    return Containment::Possible;
+                }
+                // A body with an extent in all directions needs none but means of what is known to be in the region.
+                let is_flat = local.radii.min() <= DIGITS * local.radii.amax();
+                let inside = |x: &Vector3<f64>| is_flat && hull.holds(x);
+                let own = local.on_own_axes(inside, |n| hull.exit(&local.centre, n));
+                local.decide(corners.into_iter().chain(own), size)
             }
         }
     }
@@ -339,17 +335,20 @@ impl Local {
         let steps = [0, 1, 2].map(|k| {
             let axis: Vector3<f64> = self.axes.column(k).into();
             if self.radii[k] <= DIGITS * self.radii.amax() {
-                return vec![Vector3::zeros()];
+                return vec![(Vector3::zeros(), 0.0)];
             }
             let [there, back] = [axis, -axis].map(|n| n * (exit(&n) * (1.0 - DIGITS)));
-            let fractions = OWN_FRACTIONS.into_iter().flat_map(|f| [there * f, back * f]);
-            fractions.chain([Vector3::zeros()]).collect()
+            let fractions = OWN_FRACTIONS.into_iter().flat_map(|f| [(there * f, f), (back * f, f)]);
+            fractions.chain([(Vector3::zeros(), 0.0)]).collect()
         });
         let [first, second, third] = &steps;
         let all = first.iter().flat_map(|a| {
-            second.iter().flat_map(move |b| third.iter().map(move |c| self.centre + a + b + c))
+            second.iter().flat_map(move |b| {
+                third.iter().map(move |c| (self.centre + a.0 + b.0 + c.0, a.1 + b.1 + c.1))
+            })
         });
-        all.filter(inside).collect()
+        // A mean of the mass centre and of where the axes leave the region is in it.
+        all.filter(|(x, share)| *share <= 1.0 || inside(x)).map(|(x, _)| x).collect()
     }
 
     /// Six equal masses on the principal axes that have the mass properties.
@@ -383,24 +382,11 @@ impl Local {
         };
         let columns: Vec<SVector<f64, 10>> = points.map(moments).collect();
         let wanted = pack(&Vector3::zeros(), &(self.spread / (size * size)));
-        if non_negative::distance(&columns, &wanted) <= DIGITS {
+        if non_negative::rest(&columns, &wanted).norm() <= DIGITS {
             Containment::Possible
         } else {
             Containment::Undecided
         }
-    }
-
-    /// Whether a point is a mean of corners.
-    fn is_in(&self, point: &Vector3<f64>, corners: &[Vector3<f64>], size: f64) -> bool {
-        if !(size > 0.0) {
-            return corners.first() == Some(point);
-        }
-        let place = |x: &Vector3<f64>| {
-            let x = (x - point) / size;
-            SVector::<f64, 4>::new(1.0, x.x, x.y, x.z)
-        };
-        let columns: Vec<_> = corners.iter().map(place).collect();
-        non_negative::distance(&columns, &SVector::<f64, 4>::new(1.0, 0.0, 0.0, 0.0)) <= DIGITS
     }
 }
 

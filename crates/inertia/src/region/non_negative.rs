@@ -5,9 +5,13 @@ use nalgebra::{DMatrix, DVector, SVector};
 /// How many columns are taken in at most, many times what a sum of ten needs.
 const MOST: usize = 200;
 
-/// Minimises ‖Σ_j w_j a_j − b‖ over w ≥ 0 and gives the distance that remains: the active set of Lawson and Hanson (1974,
-/// *Solving Least Squares Problems*, chapter 23). No more columns than rows are ever in use.
-pub(super) fn distance<const N: usize>(columns: &[SVector<f64, N>], b: &SVector<f64, N>) -> f64 {
+/// Minimises ‖Σ_j w_j a_j − b‖ over w ≥ 0 and gives what remains of b: the active set of Lawson and Hanson (1974,
+/// *Solving Least Squares Problems*, chapter 23). No more columns than rows are ever in use. But for rounding no column has a
+/// component along what remains, so that it is the normal of a plane between the columns and b.
+pub(super) fn rest<const N: usize>(
+    columns: &[SVector<f64, N>],
+    b: &SVector<f64, N>,
+) -> SVector<f64, N> {
     let mut used: Vec<usize> = Vec::new();
     let mut weights: Vec<f64> = Vec::new();
     let mut rest = *b;
@@ -45,11 +49,11 @@ pub(super) fn distance<const N: usize>(columns: &[SVector<f64, N>], b: &SVector<
         let left = b - made.sum::<SVector<f64, N>>();
         // No progress but rounding.
         if !(left.norm() < rest.norm()) {
-            return left.norm().min(rest.norm());
+            return if left.norm() <= rest.norm() { left } else { rest };
         }
         rest = left;
     }
-    rest.norm()
+    rest
 }
 
 /// The weights of the columns in use, of any sign.

@@ -151,6 +151,29 @@ proptest! {
         }
     }
 
+    /// A small body well inside of the hull of a few boxes, as near its corners as they are sharp.
+    #[test]
+    fn all_corners_of_few_points_count(
+        boxes in prop::collection::vec((any_sizes(), any_pose()), 1..5),
+        towards in prop::collection::vec(1e-3..1.0f64, 40),
+    ) {
+        // About one middle, of which the thinnest box holds a ball.
+        let thinnest = boxes.iter().map(|(half, _)| half.min()).fold(f64::INFINITY, f64::min);
+        let middle = boxes[0].1.translation;
+        let points: Vec<[f64; 3]> = boxes
+            .iter()
+            .flat_map(|(half, pose)| corners(half, &Isometry3::from_parts(middle, pose.rotation)))
+            .collect();
+        let weights: Vec<f64> = points.iter().zip(&towards).map(|(_, w)| w.powi(12)).collect();
+        let total: f64 = weights.iter().sum();
+        let mean: Vector3<f64> =
+            points.iter().zip(&weights).map(|(p, w)| Vector3::from(*p) * (w / total)).sum();
+        let centre = middle.vector + (mean - middle.vector) * 0.99;
+        let ball = Shape::sphere_shell(1e-3 * thinnest).unwrap().of_mass(2.0).unwrap();
+        let body = ball.transformed(&Translation3::from(centre).into()).unwrap();
+        prop_assert_eq!(Region::hull(&points).unwrap().containment(&body), Containment::Possible);
+    }
+
     #[test]
     fn nothing_panics(x in prop::array::uniform9(prop::num::f64::ANY), body in any_body()) {
         let [a, b, c, d, e, f, g, h, i] = x;

@@ -11,7 +11,9 @@ use gyradius_estimation::{StatedBody, StatementError, Statements};
 use gyradius_formats::{
     Format, GapKind, LinkProblem, RobotError, RobotFile, RobotLink, TOLERANCE, WriteError, judge,
 };
-use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties, Region, Repair, RepairMethod};
+use gyradius_inertia::{
+    Containment, Inertia, InertiaMatrix, MassProperties, Region, Repair, RepairMethod,
+};
 use nalgebra::Matrix3;
 use rand_distr::Distribution;
 use std::sync::{Arc, atomic::AtomicBool};
@@ -241,10 +243,12 @@ impl DrawnLink {
         if held >= LEAST_HELD {
             return Ok(region);
         }
-        let nominal = if inside::holds(&region, self.law.nominal()) { "are" } else { "are not" };
-        Err(format!(
-            "of {TRIALS} draws {held} are possible for matter there, and its nominal numbers {nominal}"
-        ))
+        let nominal = match region.containment(self.law.nominal()) {
+            Containment::Possible => "and its nominal numbers are",
+            Containment::Impossible => "and its nominal numbers are not",
+            Containment::Undecided => "and of its nominal numbers it is not known",
+        };
+        Err(format!("of {TRIALS} draws {held} are possible for matter there, {nominal}"))
     }
 
     fn body(&self, draw: u64) -> MassProperties {
