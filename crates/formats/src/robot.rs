@@ -19,7 +19,7 @@ use crate::{
     mjcf_geoms::Geoms,
     references, robots,
     text::Text,
-    xml::Tree,
+    xml::{Node, Tree},
 };
 
 /// A URDF, MJCF or SDF file as links with mass properties, which can be written with others.
@@ -241,7 +241,11 @@ impl RobotFile {
         let element = if format == Format::Mjcf { "body" } else { "link" };
         let without = tree
             .all(element)
-            .filter(|link| is_body(*link, format) && inertials(*link, format).is_empty())
+            .filter(|link| {
+                let computed =
+                    |one: &Node<'_, '_>| format == Format::Sdf && robots::is_computed(*one);
+                is_body(*link, format) && inertials(*link, format).iter().all(computed)
+            })
             .filter_map(|link| link.attribute("name").map(str::to_owned))
             .collect();
         let references = references::relative(&tree);

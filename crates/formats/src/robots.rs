@@ -251,15 +251,22 @@ fn sdf(inertial: Node<'_, '_>, products: Products) -> Result<Reading, FileBodyEr
     Ok(Reading::of_six(Some(mass), &six, products))
 }
 
+/// Whether the simulator computes an inertia of SDF from the shapes.
+pub(crate) fn is_computed(inertial: Node<'_, '_>) -> bool {
+    inertial.attribute("auto").map(truth) == Some(Some(true))
+}
+
 /// What stands there is not used where the simulator computes the inertia from the shapes.
 fn sdf_or_computed(inertial: Node<'_, '_>, products: Products) -> Result<Reading, Trouble> {
+    if is_computed(inertial) {
+        return Err(Trouble::Gap(GapKind::Computed));
+    }
     match inertial.attribute("auto").map(truth) {
-        Some(Some(true)) => Err(Trouble::Gap(GapKind::Computed)),
         Some(None) => Err(Trouble::Body(FileBodyError::Shape {
             field: "auto",
             allowed: "true or false in it",
         })),
-        Some(Some(false)) | None => sdf(inertial, products).map_err(Trouble::Body),
+        Some(Some(_)) | None => sdf(inertial, products).map_err(Trouble::Body),
     }
 }
 

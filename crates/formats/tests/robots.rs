@@ -825,6 +825,23 @@ fn a_second_inertia_of_a_link_is_not_another_link() {
     }
 }
 
+/// A link whose inertia the simulator computes has none in the file, as one without the element.
+#[test]
+fn what_is_computed_from_shapes_is_no_inertia_of_the_file() {
+    let inertia = "<mass>2</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia>";
+    let link = |name: &str, auto: &str| {
+        format!("<link name='{name}'><inertial{auto}>{inertia}</inertial></link>")
+    };
+    let links = [link("a", " auto='true'"), link("b", " auto='false'"), link("c", "")].concat();
+    let text = format!("<sdf version='1.11'><model name='m'>{links}<link name='d'/></model></sdf>");
+    let file = RobotFile::parse(Path::new("a.sdf"), text.into()).unwrap();
+    let names: Vec<&str> = file.links().iter().map(|link| link.name()).collect();
+    assert_eq!(
+        (names, file.links_without_inertia()),
+        (vec!["b", "c"], &["a", "d"].map(String::from)[..])
+    );
+}
+
 #[test]
 fn what_overrides_the_inertias_is_what_mujoco_believes() {
     const FROM_GEOMETRY: Option<&str> = Some("inertiafromgeom=\"true\"");
