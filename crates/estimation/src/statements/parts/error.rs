@@ -64,7 +64,8 @@ pub enum StatementError {
     #[error(
         "mass.kg: a standard deviation of {:?} kg is stated, and it must be at most the \
          nominal mass, which is {:?} kg",
-        rounded(*deviation),
+        // What is only just too much has more digits to say.
+        if rounded(*deviation) > rounded(*mass) { rounded(*deviation) } else { *deviation },
         rounded(*mass)
     )]
     BeyondMass {
