@@ -104,6 +104,13 @@ impl JointScalar {
     ];
 }
 
+/// As files write it: `mass`, `centre1`, `shape3`.
+impl std::fmt::Display for JointScalar {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&format!("{self:?}").to_lowercase())
+    }
+}
+
 impl MassPropertiesLaw {
     /// From the laws of the mass in kg, of the mass centre in m along the body axes, and of the inertia about it.
     ///
@@ -421,7 +428,7 @@ pub enum MassPropertiesLawError {
     #[error(transparent)]
     Tensor(#[from] TensorLawError),
     /// The coefficients of correlation.
-    #[error("correlation of {:?} and {:?}: {problem}", scalars[0], scalars[1])]
+    #[error("correlation of {} and {}: {problem}", scalars[0], scalars[1])]
     Correlation {
         /// The two scalars.
         scalars: [JointScalar; 2],

@@ -338,7 +338,8 @@ fn what_is_no_law_is_refused_by_name() {
     let error = law.clone().with_correlation(&pair).unwrap_err();
     assert_eq!(error, MassPropertiesLawError::NoShape { scalar: JointScalar::Shape2 });
     let pair = [(JointScalar::Mass, JointScalar::Centre2, 1.5)];
-    assert!(law.with_correlation(&pair).is_err());
+    let error = law.with_correlation(&pair).unwrap_err().to_string();
+    assert!(error.starts_with("correlation of mass and centre2: "), "{error}");
 }
 
 /// A mass that counts twice, in the lengths and as a factor, is found by the moments: a negative control.
