@@ -238,7 +238,7 @@ impl DrawnLink {
         let streams = Streams::new(0, TRIALS_MODEL, &self.name);
         let trial =
             |trial: &u64| inside::holds(&region, &self.law.sample(&mut streams.run(*trial)));
-        // A trial in the hull of a round mesh takes some hundredths of a second.
+        // A trial in the hull of a round mesh takes milliseconds.
         let held = (0..TRIALS).filter(trial).take(LEAST_HELD).count();
         if held >= LEAST_HELD {
             return Ok(region);
