@@ -151,7 +151,7 @@ macro_rules! kinds {
         }
 
         /// Where a load stands: its kind, and its number among those of the kind.
-        #[derive(Clone, Copy, Debug)]
+        #[derive(Clone, Copy, Debug, PartialEq)]
         pub(crate) enum Slot {
             $($Kind(usize),)+
         }
@@ -163,7 +163,7 @@ macro_rules! kinds {
         }
 
         /// The loads of each kind in their places.
-        #[derive(Clone, Debug, Default)]
+        #[derive(Clone, Debug, Default, PartialEq)]
         struct Seats {
             $($kinds: Vec<<$Kind as Kind>::Seated>,)+
             slots: SmallVec<[Slot; INLINE_LOADS]>,
@@ -294,7 +294,7 @@ kinds! {
 }
 
 /// The loads of a separation in their places, numbered through in the order in which they were given.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Loads(Arc<Seats>);
 
 impl Loads {

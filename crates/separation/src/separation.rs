@@ -92,7 +92,7 @@ fn kinds(between: &str) -> String {
 /// assert!(separation.free_lengths().all(|free| (free - 0.3).abs() < 1e-15));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Separation {
     payload: MovingBody,
     stage: MovingBody,

@@ -36,7 +36,7 @@ use crate::{
 /// assert!(times.is_sorted());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Step {
     separation: Separation,
     start: f64,
@@ -115,9 +115,11 @@ impl Step {
 /// let trajectory = separation.trajectory(&Settings::default(), 2.0)?;
 /// assert_eq!(trajectory.end_s(), trajectory.outcome().release_time() + 2.0);
 /// assert_eq!(trajectory.outcome(), &separation.run(&Settings::default())?);
+/// assert_eq!(trajectory, separation.clone().trajectory(&Settings::default(), 2.0)?);
+/// assert_ne!(trajectory, separation.trajectory(&Settings::default(), 1.0)?);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Trajectory {
     steps: Vec<Step>,
     outcome: Outcome,
