@@ -8,8 +8,7 @@ mod words;
 
 use gyradius_campaign::{Kept, Rows, StoppingRule, Verdict, folder_of};
 use gyradius_study::{
-    AnyScenario, Judged, Notice, Options, Replay, ScenarioError, SimulatorReplay, StudyOutcome,
-    Which, begun_study,
+    AnyScenario, Judged, Notice, Options, Replay, SimulatorReplay, StudyOutcome, Which, begun_study,
 };
 use pyo3::{
     Bound, Py, PyAny, PyResult, Python, exceptions::PyOSError, pyclass, pymethods, types::PyDict,
@@ -19,7 +18,7 @@ use std::{
     sync::Mutex,
 };
 
-use crate::error::{refused, unreadable};
+use crate::error::refused;
 use called::Called;
 use watched::Watched;
 
@@ -59,10 +58,7 @@ impl ScenarioCore {
         let begun = if is_folder { begun_study(&folder) } else { Ok(None) };
         let begun = begun.map_err(|error| PyOSError::new_err(error.to_string()))?;
         let scenario = if begun.is_none() && function.is_none() && outputs.is_none() {
-            AnyScenario::read(&file).map_err(|error| match error {
-                ScenarioError::Read { path, problem } => unreadable(&path, &problem),
-                other => refused(other),
-            })?
+            AnyScenario::read(&file).map_err(given::unread)?
         } else {
             let table = match begun {
                 Some(text) => given::parse(&text, &folder)?,

@@ -17,7 +17,7 @@ use crate::{
     decisions, drivers,
     head::{Head, Judged, Missing},
     rare, results,
-    scenario::{read_file, scenario_file},
+    scenario::{scenario_file, scenario_text},
     shards,
     study::{self},
     subject::{Subject, Summarized},
@@ -60,7 +60,7 @@ impl AnyScenario {
     /// # Errors
     /// The file cannot be read, is not TOML, has an unknown key, or a value that is not allowed.
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
-        let scenario = Self::from_toml(&read_file(path)?, folder_of(path));
+        let scenario = Self::from_toml(&scenario_text(path)?, folder_of(path));
         let checked = scenario.and_then(|scenario| {
             match &scenario {
                 Self::Separation(separations) => decisions::check_columns(&**separations)?,
@@ -349,7 +349,7 @@ impl SimulatorScenario {
     /// together yet may have it in no file.
     #[must_use]
     pub fn is_in(path: &Path) -> bool {
-        let text = read_file(&scenario_file(path)).ok().or_else(|| begun(path).ok()?);
+        let text = scenario_text(&scenario_file(path)).ok().or_else(|| begun(path).ok()?);
         text.is_some_and(|text| is_of_simulator(&text))
     }
 }

@@ -105,7 +105,7 @@ pub use robots::{
     as_written, inset,
 };
 pub use rollup::{DrawnMoments, NaiveShares, Rollup, RollupDraws, RollupError, RollupOptions};
-pub use scenario::{Scenario, ScenarioError, TomlError, parse_toml, whole_number};
+pub use scenario::{Scenario, ScenarioError, TomlError, parse_toml, scenario_text, whole_number};
 pub use shards::{ModelStatus, Status};
 pub use simulator::{SimulatorReplay, SimulatorScenario, SimulatorSummary};
 pub use study::{Study, restore_studies};

@@ -13,7 +13,7 @@ use crate::{
     decisions::check_columns,
     head::Missing,
     results::no_study,
-    scenario::read_file,
+    scenario::scenario_text,
     study::{count, foretell, plan, same_as_before},
     subject::Subject,
     unfinished::{begun_study, replacement},
@@ -124,7 +124,7 @@ pub(crate) fn run_shard<C: Subject>(
 fn agree<C: Subject>(scenario: &C, folder: &Path) -> Result<(), StudyError> {
     let there = |text: String| C::resolved(&text).ok();
     let (begun, done) = (begun(folder)?.and_then(there), || {
-        read_file(&folder.join("scenario.toml")).ok().and_then(there)
+        scenario_text(&folder.join("scenario.toml")).ok().and_then(there)
     });
     let runs = begun.as_ref().map(C::runs).filter(|runs| *runs != scenario.runs());
     let runs = runs.map(|there| Difference {
@@ -150,7 +150,7 @@ pub(crate) fn text(folder: &Path) -> Result<String, StudyError> {
     if let Some(problem) = changed(folder, "study", &["scenario.toml"])? {
         return Err(absent(problem));
     }
-    read_file(&folder.join("scenario.toml")).map_err(|_| absent(no_study(folder)))
+    scenario_text(&folder.join("scenario.toml")).map_err(|_| absent(no_study(folder)))
 }
 
 /// What of a study is there.

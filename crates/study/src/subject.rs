@@ -164,6 +164,6 @@ pub(crate) fn head_of(scenario: &impl Subject, columns: &[Column]) -> Head {
 
 /// Reads the scenario in a file of a study, which says in which file what is wrong.
 pub(crate) fn read_resolved<C: Subject>(file: &Path) -> Result<C, ScenarioError> {
-    let text = crate::scenario::read_file(file)?;
+    let text = crate::scenario::scenario_text(file)?;
     C::resolved(&text).map_err(|error| error.in_file(file))
 }

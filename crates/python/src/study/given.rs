@@ -1,8 +1,8 @@
 //! Scenarios as dictionaries, with the keys of the files.
 
-use gyradius_study::{AnyScenario, ScenarioError, parse_toml};
+use gyradius_study::{AnyScenario, ScenarioError, parse_toml, scenario_text};
 use pyo3::{
-    Bound, PyAny, PyResult,
+    Bound, PyAny, PyErr, PyResult,
     types::{
         PyAnyMethods, PyBool, PyFloat, PyInt, PyMapping, PyMappingMethods, PyString, PyTypeMethods,
     },
@@ -22,8 +22,15 @@ const SIMULATION: &str = "simulation";
 
 /// What stands in a scenario file.
 pub(super) fn read(path: &Path) -> PyResult<Table> {
-    let text = std::fs::read_to_string(path).map_err(|error| unreadable(path, &error))?;
-    parse(&text, path)
+    parse(&scenario_text(path).map_err(unread)?, path)
+}
+
+/// Why a scenario file cannot be read, or is refused.
+pub(super) fn unread(error: ScenarioError) -> PyErr {
+    match error {
+        ScenarioError::Read { path, problem } => unreadable(&path, &problem),
+        other => refused(other),
+    }
 }
 
 /// What stands in a text that is from a file, or from the folder of a study.

@@ -152,7 +152,7 @@ impl Scenario {
     /// # Errors
     /// The file cannot be read, is not TOML, has an unknown key, or a value that is not allowed.
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
-        let text = read_file(path)?;
+        let text = scenario_text(path)?;
         Ok(Self::from_toml(&text).map_err(|error| error.in_file(path))?.read_from(path))
     }
 
@@ -410,7 +410,10 @@ pub(crate) fn scenario_file(path: &Path) -> PathBuf {
 }
 
 /// The text of a scenario file. One in the folder of a study may have been put aside by a command that was killed.
-pub(crate) fn read_file(path: &Path) -> Result<String, ScenarioError> {
+///
+/// # Errors
+/// It is no regular file, or larger than a scenario may be, or no text; or the system refuses.
+pub fn scenario_text(path: &Path) -> Result<String, ScenarioError> {
     let unread = |problem| ScenarioError::Read { path: path.to_owned(), problem };
     gyradius_campaign::restore(gyradius_campaign::folder_of(path))
         .map_err(|error| unread(std::io::Error::other(error)))?;

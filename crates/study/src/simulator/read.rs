@@ -6,7 +6,7 @@ use std::path::Path;
 use super::{draws::SimulatorDraws, scenario::SimulatorScenario};
 use crate::{
     ResultsError, ScenarioError, results,
-    scenario::{read_file, scenario_file},
+    scenario::{scenario_file, scenario_text},
     unfinished::unfinished,
 };
 
@@ -17,7 +17,7 @@ impl SimulatorScenario {
     /// The file cannot be read, is not TOML, has an unknown key, or a value that is not allowed.
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
         let file = scenario_file(path);
-        let text = read_file(&file)?;
+        let text = scenario_text(&file)?;
         let folder = folder_of(&file);
         let scenario = Self::from_toml(&text, folder).map_err(|error| error.in_file(&file))?;
         Ok(scenario.read_from(&file))
