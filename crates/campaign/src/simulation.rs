@@ -3,6 +3,8 @@
 use gyradius_statistics::StatisticsError;
 use rayon::prelude::*;
 use std::{
+    env,
+    num::NonZero,
     ops::Range,
     panic::resume_unwind,
     sync::atomic::{AtomicBool, AtomicU64, Ordering},
@@ -22,6 +24,8 @@ use crate::{
 const TOGETHER: u64 = 64;
 /// Most threads that may be asked for.
 const MAX_THREADS: usize = 1024;
+/// What says how many threads there are, where nobody asks for a number.
+const NUMBER_OF_THREADS: &str = "RAYON_NUM_THREADS";
 
 /// Anything that turns random draws into the columns of a run table.
 ///
@@ -218,7 +222,7 @@ pub fn go_on(stop: Option<&AtomicBool>) -> Result<(), CampaignError> {
     if is_stopped(stop) { Err(CampaignError::Stopped) } else { Ok(()) }
 }
 
-/// So many threads, or as many as the machine has.
+/// So many threads; if no number is given, as many as `RAYON_NUM_THREADS` says, or as the machine has, but at most 1024.
 ///
 /// # Errors
 /// The number is not between 1 and 1024, or they cannot be started.
@@ -228,9 +232,17 @@ pub fn threads(number: Option<usize>) -> Result<rayon::ThreadPool, CampaignError
         return Err(CampaignError::Threads { problem });
     }
     rayon::ThreadPoolBuilder::new()
-        .num_threads(number.unwrap_or(0))
+        .num_threads(number.unwrap_or_else(|| unasked(env::var(NUMBER_OF_THREADS).ok().as_deref())))
         .build()
         .map_err(|e| CampaignError::Threads { problem: e.to_string() })
+}
+
+/// How many threads there are where nobody asks for a number: what the variable says, if it says a number, and otherwise one for each
+/// core. A number that is not positive says nothing, as it does for rayon.
+fn unasked(said: Option<&str>) -> usize {
+    let said = said.and_then(|said| said.parse().ok()).filter(|number| *number > 0);
+    let number = said.or_else(|| thread::available_parallelism().ok().map(NonZero::get));
+    number.unwrap_or(1).min(MAX_THREADS)
 }
 
 /// Why a campaign cannot be done.
@@ -279,6 +291,24 @@ impl From<RunsError> for CampaignError {
         match error {
             RunsError::Stopped => Self::Stopped,
             block @ RunsError::Block { .. } => Self::Runs(block),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_variable_asks_for_more_threads_than_a_caller_may() {
+        for (said, number) in [("1", 1), ("7", 7), ("1024", 1024), ("1025", 1024), ("99999", 1024)]
+        {
+            assert_eq!(unasked(Some(said)), number, "{said}");
+        }
+        let cores = unasked(None);
+        assert!((1..=MAX_THREADS).contains(&cores));
+        for said in ["", "0", "-1", "2.5", "many", "99999999999999999999999"] {
+            assert_eq!(unasked(Some(said)), cores, "{said}");
         }
     }
 }

@@ -5,7 +5,11 @@ use nalgebra::{Matrix3, Quaternion, UnitQuaternion};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::{Bound, PyErr, PyResult, Python};
 use rayon::prelude::*;
-use std::{convert::Infallible, fmt::Display};
+use std::{
+    convert::Infallible,
+    fmt::Display,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
 use crate::{
     cores::on_all,
@@ -15,7 +19,7 @@ use crate::{
 
 /// Rows that one core does at a time: fewer than this many are not worth a second core.
 const GRAIN: usize = 1024;
-/// Rows between two looks for an interrupt.
+/// Rows for which memory is got at a time.
 const SLICE: usize = 1 << 18;
 
 /// Rows of `N` numbers, as they are in the memory of NumPy.
@@ -109,10 +113,11 @@ fn try_draw<T: Copy + Send + Sync>(
     words: usize,
     draw: impl Fn(&mut StreamRng) -> T + Sync,
 ) -> PyResult<Vec<T>> {
-    fill(py, draws.count(), zero, &|first, out| {
-        let each = (first..first + out.len()).map(|row| draws.stream(row));
+    fill(py, draws.count(), zero, &|first, out, stop| {
+        let goes_on = |_: &usize| !stop.load(Ordering::Relaxed);
+        let rows = (first..first + out.len()).take_while(goes_on);
         let mut out = out.iter_mut();
-        Streams::each(each, words, |rng| {
+        Streams::each(rows.map(|row| draws.stream(row)), words, |rng| {
             if let Some(out) = out.next() {
                 *out = draw(rng);
             }
@@ -127,16 +132,19 @@ fn try_make<T: Copy + Send + Sync, E: Display>(
     zero: T,
     make: impl Fn(usize) -> Result<T, E> + Sync,
 ) -> PyResult<Vec<T>> {
-    fill(py, count, zero, &|first, out| {
+    fill(py, count, zero, &|first, out, stop| {
         for (row, out) in (first..).zip(out) {
+            if stop.load(Ordering::Relaxed) {
+                break;
+            }
             *out = make(row).map_err(|error| (row, error.to_string()))?;
         }
         Ok(())
     })
 }
 
-/// Fills some rows, from one of them on, or says which one cannot be made and why.
-type Fill<'a, T> = dyn Fn(usize, &mut [T]) -> Result<(), (usize, String)> + Sync + 'a;
+/// Fills some rows, from one of them on, or says which one cannot be made and why. It ends before they are filled once it is to stop.
+type Fill<'a, T> = dyn Fn(usize, &mut [T], &AtomicBool) -> Result<(), (usize, String)> + Sync + 'a;
 
 /// Fills rows, some at a time. What fills them is an object, so that the work of several cores is compiled once for a
 /// type of rows, and not for each law.
@@ -148,24 +156,26 @@ fn fill<T: Copy + Send + Sync>(
 ) -> PyResult<Vec<T>> {
     let mut out = Vec::new();
     out.try_reserve_exact(count).map_err(|_| no_memory(count))?;
+    let stop = AtomicBool::new(false);
     let mut start = 0;
     while start < count {
         let end = count.min(start + SLICE);
-        let failed = py.detach(|| {
-            out.resize(end, zero);
-            let fill = |(place, out): (usize, &mut [T])| some(place * GRAIN + start, out);
-            let new = &mut out[start..];
-            if new.len() <= GRAIN {
-                return fill((0, new)).err();
-            }
-            on_all(|| {
-                new.par_chunks_mut(GRAIN)
+        let failed = if end - start <= GRAIN {
+            py.detach(|| {
+                out.resize(end, zero);
+                some(start, &mut out[start..], &stop).err()
+            })
+        } else {
+            on_all(py, &stop, || {
+                out.resize(end, zero);
+                out[start..]
+                    .par_chunks_mut(GRAIN)
                     .enumerate()
-                    .map(fill)
+                    .map(|(place, out)| some(place * GRAIN + start, out, &stop))
                     .filter_map(Result::err)
                     .min_by_key(|failed| failed.0)
-            })
-        });
+            })?
+        };
         if let Some((row, error)) = failed {
             return Err(refused_row(row, count, error));
         }

@@ -170,12 +170,22 @@ def test_others_run_while_it_draws() -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
-def test_control_c_ends_a_long_call() -> None:
+@pytest.mark.parametrize(
+    "call",
+    [
+        "gyradius.small_rotations([0, 0, 0, 1], [[.01, 0, 0], [0, .01, 0], [0, 0, .01]]).rvs(200_000_000, rng=1)",
+        # Of two thousand draws about one is kept.
+        "gyradius.law(link, centre='1m', inside=gyradius.box([0.1, 0, 0], sides=[0.3, 0.3, 0.3])).rvs(250_000, rng=1)",
+    ],
+    ids=["many", "slow"],
+)
+def test_control_c_ends_a_long_call(call: str) -> None:
     program = (
         "import gyradius\n"
+        "link = gyradius.MassProperties(2.0, [0.1, 0, 0], [[0.002, 0, 0], [0, 0.01, 0], [0, 0, 0.011]])\n"
         "print('ready', flush=True)\n"
         "try:\n"
-        "    gyradius.small_rotations([0, 0, 0, 1], [[.01, 0, 0], [0, .01, 0], [0, 0, .01]]).rvs(200_000_000, rng=1)\n"
+        f"    {call}\n"
         "except KeyboardInterrupt:\n"
         "    print('interrupted', flush=True)\n"
     )
@@ -184,8 +194,59 @@ def test_control_c_ends_a_long_call() -> None:
     assert child.stdout.readline() == "ready\n"
     time.sleep(0.5)
     child.send_signal(signal.SIGINT)
-    out, _ = child.communicate(timeout=60)
+    try:
+        out, _ = child.communicate(timeout=60)
+    finally:
+        child.kill()
     assert out == "interrupted\n" and child.returncode == 0
+
+
+THREADS = """
+import os, sys, time
+import gyradius
+
+def threads():
+    return len(os.listdir("/proc/self/task"))
+
+before = threads()
+gyradius.normal(0.0, 1.0).rvs(100_000, rng=1)
+had = threads() - before
+folder, table, peck = sys.argv[1:] or sys.exit(print(had))
+gyradius.study(peck, runs=20, out=folder).to_numpy()
+gyradius.study(folder).replay(3)
+quiet = os.dup(1)
+os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+for call in (["report", folder], ["verdict", table, "--require", "y <= 1 in 50 % at 90 %"]):
+    assert gyradius._core.run_program(["gyradius"], ["gyradius", *call]) == 0, call
+os.dup2(quiet, 1)
+# Threads that end may still be there for a moment.
+until = time.monotonic() + 30
+while threads() > before + had and time.monotonic() < until:
+    time.sleep(0.01)
+print(had, threads() - before)
+"""
+
+
+def threads_of(said: str, *arguments: str) -> list[int]:
+    """How many threads a program has beside its first, with so many in the variable."""
+    environment = {**os.environ, "RAYON_NUM_THREADS": said, "OPENBLAS_NUM_THREADS": "1"}
+    run = [sys.executable, "-c", THREADS, *arguments]
+    done = subprocess.run(run, env=environment, capture_output=True, text=True, check=True)
+    return [int(word) for word in done.stdout.split()]
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="how many threads a process has is not told here")
+def test_the_variable_asks_for_no_more_threads_than_a_caller_may() -> None:
+    assert [threads_of(said) for said in ("3", "1100")] == [[3], [1024]]
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="how many threads a process has is not told here")
+def test_no_threads_are_left_that_no_bound_holds_for(tmp_path: Path) -> None:
+    table = tmp_path / "table.csv"
+    table.write_text("y\n" + "0.5\n" * 5_000, encoding="utf-8")
+    peck = Path(__file__).parents[2] / "study/src/scenario/peck-2003.toml"
+    # Those that rayon has of its own, as many as the variable says without any bound, would stay.
+    assert threads_of("3", str(tmp_path / "out"), str(table), str(peck)) == [3, 3]
 
 
 def test_the_program(tmp_path: Path) -> None:

@@ -1,8 +1,7 @@
 //! `gyradius report`: the report of a study made again, or of one whose runs are put together now.
 
-use gyradius_study::{
-    Notice, Options, ResultsError, is_begun, put_together, replacement, write_report,
-};
+use gyradius_campaign::threads;
+use gyradius_study::{Notice, Options, is_begun, put_together, replacement, write_report};
 use std::{
     error::Error,
     path::{Path, PathBuf},
@@ -32,6 +31,7 @@ pub(crate) fn report(arguments: &ReportArgs) -> Result<ExitCode, Box<dyn Error>>
     Ok(if study.is_complete() { ExitCode::SUCCESS } else { ExitCode::from(UNFINISHED) })
 }
 
-fn write(folder: &Path, arguments: &ReportArgs) -> Result<PathBuf, ResultsError> {
-    write_report(folder, arguments.out.as_deref(), arguments.force)
+fn write(folder: &Path, arguments: &ReportArgs) -> Result<PathBuf, Box<dyn Error>> {
+    let out = arguments.out.as_deref();
+    Ok(threads(None)?.install(|| write_report(folder, out, arguments.force))?)
 }

@@ -1,5 +1,6 @@
 //! `gyradius verdict`: whether the runs in a table of anybody's meet requirements.
 
+use gyradius_campaign::threads;
 use gyradius_study::{FailedRuns, Fleet, ForeignTable, Judgement, Looks, Requirement, Verdict};
 use serde_json::json;
 use std::{error::Error, fmt::Write, io, path::Path, process::ExitCode};
@@ -28,7 +29,7 @@ pub(crate) fn verdict(arguments: &VerdictArgs) -> Result<ExitCode, Box<dyn Error
     let failed = if arguments.leave_out_failed { FailedRuns::LeftOut } else { FailedRuns::Against };
     let requirements: Vec<Requirement> =
         arguments.require.iter().map(|r| r.clone().with_failed_runs(failed)).collect();
-    let judgements = Judgement::of_table(&requirements, &table)?;
+    let judgements = threads(None)?.install(|| Judgement::of_table(&requirements, &table))?;
     if arguments.json {
         let judged = json!({ "table": arguments.table, "requirements": judgements });
         print_json(&serde_json::to_string_pretty(&judged)?)?;
