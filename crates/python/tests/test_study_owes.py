@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import copy
+import gc
 import math
 import multiprocessing
+import os
 import pickle
 import re
 import shutil
+import weakref
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -157,6 +160,36 @@ def test_processes_read_a_study_at_the_same_time(tmp_path: Path) -> None:
     both = [study(tmp_path / "out"), study()]
     with multiprocessing.get_context("spawn").Pool(2) as pool:
         assert pool.map_async(mean, both * 8, chunksize=1).get(timeout=120) == [mean(both[0])] * 16
+
+
+def dropped(known: list[gyradius.Study]) -> None:
+    """What a process does that was forked, and lets go of what it has from the other."""
+    known.clear()
+    gc.collect()
+
+
+@pytest.mark.skipif("fork" not in multiprocessing.get_all_start_methods(), reason="there is no fork")
+@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
+def test_a_process_that_was_forked_leaves_the_study_of_its_parent() -> None:
+    studies = [study(), pickle.loads(pickle.dumps(study()))]
+    folders = [one.folder for one in studies]
+    for ends in (True, False):
+        child = os.fork()
+        if child == 0:
+            dropped(list(studies) if ends else studies)
+            # With what is done at the end of a program, or without.
+            if ends:
+                weakref.finalize._exitfunc()  # type: ignore[attr-defined]
+            os._exit(0)
+        assert os.waitpid(child, 0)[1] == 0
+        assert all(folder.is_dir() for folder in folders), ends
+    other = multiprocessing.get_context("fork").Process(target=dropped, args=(studies,))
+    other.start()
+    other.join(60)
+    assert other.exitcode == 0 and all((folder / "report.html").exists() for folder in folders)
+    assert [mean(one) for one in studies] == [mean(studies[0])] * 2
+    dropped(studies)
+    assert not any(folder.exists() for folder in folders)
 
 
 def test_what_is_read_from_a_pickle_does_no_runs() -> None:

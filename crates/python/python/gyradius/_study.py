@@ -88,7 +88,7 @@ class Study:
         made._done = core
         made._is_temporary = temporary is not None
         if temporary is not None:
-            weakref.finalize(made, shutil.rmtree, temporary, ignore_errors=True)
+            weakref.finalize(made, _remove, temporary, os.getpid())
         return made
 
     @property
@@ -239,6 +239,12 @@ class Study:
             f"<h3>{html.escape(self.name)}</h3><table>{''.join(runs)}</table><table>{''.join(said)}</table>"
             f'<details><summary>Report</summary><iframe srcdoc="{page}" width="100%" height="600"></iframe></details>'
         )
+
+
+def _remove(temporary: str, process: int) -> None:
+    """Removes a temporary folder, unless this is a process that was forked from the one that made it, which still has it."""
+    if os.getpid() == process:
+        shutil.rmtree(temporary, ignore_errors=True)
 
 
 def _read_again(folder: Path) -> Study:
