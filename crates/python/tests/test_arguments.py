@@ -5,9 +5,125 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
+from test_study import NORMAL, double, scenario
+
+import gyradius
+from gyradius import MassPropertiesLaw, normal, uniform_attitude
+
+BODY = gyradius.MassProperties(2.0, [0.1, 0.0, 0.0], np.diag([0.002, 0.01, 0.011]))
+OUTPUTS = {"y": "m", "z": "1"}
+HALF = "\ud800"
+
+
+def joint(**keys: Any) -> MassPropertiesLaw:
+    laws = [normal(one, 0.1 * one) for one in (0.12, 0.05, 0.04)]
+    return MassPropertiesLaw.joint(normal(2.0, 0.1), [0.1, 0.0, 0.0], gyration_lengths=laws, axes=uniform_attitude(), **keys)
+
+
+def study(**keys: Any) -> gyradius.Study:
+    return gyradius.study(scenario(), double, outputs=OUTPUTS, **keys)
+
+
+@pytest.mark.parametrize("way", [tuple, iter, np.array, dict.fromkeys, lambda names: (name for name in names)])
+def test_columns_may_be_whatever_gives_names(way: Callable[[list[str]], Iterable[str]]) -> None:
+    given = way(["y", "x"])
+    if isinstance(given, dict):
+        with pytest.raises(ValueError, match="^columns = .*: it must be a list of names"):
+            study(columns=given)
+        return
+    assert list(study(columns=given).to_numpy()["all"]) == list(study(columns=["y", "x"]).to_numpy()["all"])
+    assert "y" in study(columns=["y", "x"]).to_numpy()["all"]
+
+
+@pytest.mark.parametrize("wrong", ["y", b"y", 3, True, np.array("y"), iter([3]), {"y": "m"}, [b"y"]])
+def test_columns_that_are_no_names_are_refused(wrong: Any) -> None:
+    with pytest.raises(ValueError, match="^columns = .*: it must be a list of names"):
+        study(columns=wrong)
+
+
+@pytest.mark.parametrize("way", [tuple, iter, lambda pairs: (pair for pair in pairs), lambda pairs: [list(pair) for pair in pairs]])
+def test_correlations_may_be_whatever_gives_pairs(way: Callable[[list[Any]], Any]) -> None:
+    pairs = [("mass", "shape1", 0.6), ("mass", "shape2", np.float32(0.25))]
+    assert joint(correlations=way(pairs)) == joint(correlations=pairs) != joint()
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        True,
+        False,
+        3,
+        "mass",
+        "",
+        {"mass": 1, "centre1": 2, "shape1": 3},
+        {},
+        np.array([("mass", "shape1", 0.6)], dtype=object),
+        np.array(3),
+        [("mass", "shape1")],
+        ["abc"],
+        [("mass", "shape1", "0.6")],
+        [(1, "shape1", 0.6)],
+    ],
+)
+def test_correlations_that_are_none_are_refused(wrong: Any) -> None:
+    with pytest.raises(ValueError, match=r"^correlations.*: it must be (a list of pairs|two names and a number|numbers|a text)"):
+        joint(correlations=wrong)
+
+
+def with_law(law: Any) -> dict[str, Any]:
+    return scenario(quantities=[{"name": "u", "law": NORMAL}, {"name": "x", "unit": "m", "law": law}])
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: MassPropertiesLaw.maximum_entropy(BODY, mass_delta=0.1, centre_std=0.01, delta=0.1, inside="box"), "^inside = 'box': it must be a Region"),  # type: ignore[arg-type]
+        (lambda: joint(inside="box"), "^inside = 'box': it must be a Region"),
+        (lambda: joint(inertia=3), "^inertia = 3: it must be an InertiaLaw"),
+        (lambda: MassPropertiesLaw.naive(BODY, None, normal(1, 0.1)), "^rule = None: it must be a text"),  # type: ignore[arg-type]
+        (lambda: MassPropertiesLaw.naive(3, "scale-all", normal(1, 0.1)), "^nominal = 3: it must be one MassProperties"),  # type: ignore[arg-type]
+        (lambda: MassPropertiesLaw.pseudo_inertia_wishart("a", 9.0), "^mean = 'a': it must be one MassProperties"),  # type: ignore[arg-type]
+        (lambda: study().replay(1, model=3), "^model = 3: it must be a text"),  # type: ignore[arg-type]
+        (lambda: gyradius.key(1, HALF), r"^term = '\\ud800': it must be a text that UTF-8 can hold"),
+        (lambda: gyradius.key(1, f"a{HALF}b"), "^term = "),
+        (lambda: gyradius.nearest(np.eye(3), HALF), "^method = "),  # type: ignore[arg-type]
+        (lambda: study(out=5), "^out = 5: it must be a path"),
+        (lambda: study(out=b"x"), "^out = b'x': it must be a path"),
+        (lambda: gyradius.study(BytesPath(), double), "^scenario = .*: it must be a path"),
+        (lambda: gyradius.load(5), "^path = 5: it must be a path"),  # type: ignore[arg-type]
+        (lambda: gyradius.study(with_law(uniform_attitude()), double), r"^quantities\[2\]\.law = <AttitudeLaw.*: it must be a ScalarLaw"),
+        (lambda: gyradius.study(with_law(gyradius.law(BODY, mass="1%")), double), r"^quantities\[2\]\.law = <StatedLaw.*: it must be a ScalarLaw"),
+        (lambda: gyradius.law(BODY, mass="5%").rvs(3, 1, inset="no"), "^inset = 'no': it must be True or False"),  # type: ignore[arg-type]
+        (lambda: gyradius.load(Path("none.urdf"), strict=1), "^strict = 1: it must be True or False"),  # type: ignore[arg-type]
+        (lambda: uniform_attitude().rvs(3, order=np.array(["xyzw", "wxyz"])), "^order = "),  # type: ignore[arg-type]
+        (lambda: gyradius.from_estimate(np.zeros(10), np.eye(10), form=np.array([1, 2])), "^form = "),  # type: ignore[arg-type]
+    ],
+)
+def test_what_is_wrong_is_named(call: Callable[[], object], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        call()
+
+
+class BytesPath(os.PathLike):  # type: ignore[type-arg]
+    """A path that is no text."""
+
+    def __fspath__(self) -> bytes:
+        return b"x"
+
+
+def test_what_is_right_is_taken(tmp_path: Path) -> None:
+    law = gyradius.law(BODY, mass="5%")
+    assert law.rvs(3, 1, inset=np.True_) == law.rvs(3, 1, inset=True)  # type: ignore[arg-type]
+    assert gyradius.key(1, "é𝄞").term == "é𝄞"
+    one = study(out=str(tmp_path / "out"), force=np.False_)
+    assert one.folder == tmp_path / "out" and one.replay(1, model="all").run == 1
+    assert gyradius.study(with_law(normal(1.0, 0.25)), double, outputs=OUTPUTS).runs == {"all": 100}
 
 
 LIMITED = """

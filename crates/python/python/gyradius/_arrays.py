@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import operator
-from collections.abc import Mapping, Sequence
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -124,7 +126,7 @@ def floating(dtype: DTypeLike) -> np.dtype[Any]:
 
 def check_order(order: str) -> bool:
     """Whether the scalar comes first in quaternions of this order."""
-    if order not in ORDERS:
+    if not isinstance(order, str) or order not in ORDERS:
         raise ValueError(f'order = {order!r}: it must be "xyzw" (scalar last) or "wxyz" (scalar first)')
     return order == "wxyz"
 
@@ -158,10 +160,38 @@ def ordered(flat: NDArray[np.float64], order: str) -> NDArray[np.float64]:
 
 
 def text(name: str, value: Any) -> str:
-    """A text."""
+    """A text, of characters that UTF-8 has."""
     if not isinstance(value, str):
         raise ValueError(f"{name} = {value!r}: it must be a text")
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        raise ValueError(f"{name} = {value!r}: it must be a text that UTF-8 can hold, without half of a character") from None
     return value
+
+
+def flag(name: str, value: Any) -> bool:
+    """Whether something is so."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise ValueError(f"{name} = {value!r}: it must be True or False")
+    return bool(value)
+
+
+def folder_or_file(name: str, value: Any) -> Path:
+    """A path."""
+    path = os.fspath(value) if isinstance(value, (str, os.PathLike)) else value
+    if not isinstance(path, str):
+        raise ValueError(f"{name} = {value!r}: it must be a path, as a text or a pathlib.Path")
+    return Path(path)
+
+
+def listed(name: str, value: Any, what: str) -> list[Any]:
+    """What stands in a list, or in anything that can be gone through once, as an iterator can."""
+    # A text has letters, a dictionary keys, and an array without a dimension nothing.
+    is_alone = isinstance(value, (str, bytes, Mapping)) or isinstance(value, np.ndarray) and value.ndim == 0
+    if isinstance(value, Iterable) and not is_alone:
+        return list(value)
+    raise ValueError(f"{name} = {value!r}: it must be a list of {what}")
 
 
 def three(name: str, value: Any) -> list[Any]:

@@ -8,13 +8,12 @@ import json
 import os
 import warnings
 from collections.abc import Iterator
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import attitudes, floating, frozen, numbers, ordered, out, rows, together
+from gyradius._arrays import attitudes, flag, floating, folder_or_file, frozen, numbers, ordered, out, rows, together
 from gyradius._arrays import form as _form
 
 if TYPE_CHECKING:
@@ -431,10 +430,12 @@ def load(path: str | os.PathLike[str], *, strict: bool = False) -> dict[str, Mas
     ValueError
         It is no robot, or its text is malformed.
     """
-    if Path(path).is_dir():
+    file = folder_or_file("path", path)
+    if file.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
-    found, unread = _core.load_robot(Path(path))
-    if strict:
+    is_strict = flag("strict", strict)
+    found, unread = _core.load_robot(file)
+    if is_strict:
         bad = [f"{name}: {why}" for name, ten, why, _ in found if ten is None] + unread
         if bad:
             raise ValueError(f"{path}: {'; '.join(bad)}")

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import form, numbers, out, real, rows, three
+from gyradius._arrays import form, listed, numbers, out, real, rows, text, three
 from gyradius._attitude_laws import AttitudeLaw
 from gyradius._bodies import MassProperties, Region
 from gyradius._inertia_laws import InertiaLaw
-from gyradius._law import Fit, LawOfBodies, Matrix, known, make, picture, short, vector
+from gyradius._law import Fit, LawOfBodies, Matrix, known, make, of_kind, picture, short, vector
 from gyradius._rng import draws_of
 from gyradius._scalar_laws import ScalarLaw, law_of, scalar
 
@@ -44,7 +44,7 @@ class MassPropertiesLaw(LawOfBodies):
         inertia: InertiaLaw | None = None,
         follows: float | None = None,
         nominal_mass: float | None = None,
-        correlations: Sequence[tuple[str, str, float]] = (),
+        correlations: Iterable[tuple[str, str, float]] | None = (),
         inside: Region | None = None,
     ) -> MassPropertiesLaw:
         """Mass, mass centre and inertia from laws of their own, correlated where it is said.
@@ -86,8 +86,8 @@ class MassPropertiesLaw(LawOfBodies):
         """
         kinds: list[tuple[str, Any, type]] = [("axes", axes, AttitudeLaw), ("inertia", inertia, InertiaLaw), ("inside", inside, Region)]
         for name, one, kind in kinds:
-            if one is not None and not isinstance(one, kind):
-                raise ValueError(f"{name} = {one!r}: it must be a {kind.__name__}")
+            if one is not None:
+                of_kind(name, one, kind)
         given = [one is not None for one in (gyration_lengths, roots, inertia)]
         if sum(given) != 1:
             raise ValueError("one of gyration_lengths, roots and inertia must be given")
@@ -114,10 +114,9 @@ class MassPropertiesLaw(LawOfBodies):
             "mass_centre_m": [scalar(f"centre[{i}]", law) for i, law in enumerate(three("centre", centre))],
             "inertia": tensor,
         }
-        if correlations:
-            if not all(isinstance(one, (list, tuple)) and len(one) == 3 for one in correlations):
-                raise ValueError(f"correlations = {correlations!r}: each must be two names and a number")
-            said["correlations"] = [[one, other, real("correlations", value)] for one, other, value in correlations]
+        pairs = [] if correlations is None else listed("correlations", correlations, "pairs with their correlation, each of two names and a number")
+        if pairs:
+            said["correlations"] = [_pair(f"correlations[{i}]", pair) for i, pair in enumerate(pairs)]
         if inside is not None:
             said["inside"] = inside.form
         return MassPropertiesLaw.of(said)
@@ -149,17 +148,19 @@ class MassPropertiesLaw(LawOfBodies):
 
         `mass_delta` is the relative deviation of the mass, `delta` the dispersion of the second moments, `centre_std` (3,) in m.
         """
+        if inside is not None:
+            of_kind("inside", inside, Region)
         region = None if inside is None else json.dumps(inside.form)
         each = numbers("centre_std", centre_std)
         centre = vector("centre_std", np.broadcast_to(each, (3,)) if each.ndim == 0 else each, 3)
         deltas = real("mass_delta", mass_delta), real("delta", delta)
-        return make(MassPropertiesLaw, "maximum_entropy", ten_of(mean), deltas[0], centre, deltas[1], region)
+        return make(MassPropertiesLaw, "maximum_entropy", ten_of("mean", mean), deltas[0], centre, deltas[1], region)
 
     @staticmethod
     def pseudo_inertia_wishart(mean: MassProperties, degrees_of_freedom: float) -> MassPropertiesLaw:
         """The Wishart law of the pseudo-inertia about that of a body."""
         freedom = real("degrees_of_freedom", degrees_of_freedom)
-        return make(MassPropertiesLaw, "pseudo_inertia_wishart", ten_of(mean), freedom)
+        return make(MassPropertiesLaw, "pseudo_inertia_wishart", ten_of("mean", mean), freedom)
 
     @staticmethod
     def naive(
@@ -172,7 +173,7 @@ class MassPropertiesLaw(LawOfBodies):
         """
         given = {"law": law, "mass": mass, "centre": centre}
         laws = [json.dumps(law_of(name, one).form) if name == "law" or one is not None else None for name, one in given.items()]
-        return make(MassPropertiesLaw, "naive", ten_of(nominal), rule, *laws)
+        return make(MassPropertiesLaw, "naive", ten_of("nominal", nominal), text("rule", rule), *laws)
 
     def rvs(self, size: int | tuple[int, ...] | None = None, rng: RNG = None) -> MassProperties:
         """Draws, as `MassProperties` of the shape `size`: see `AttitudeLaw.rvs` for `rng`."""
@@ -216,7 +217,16 @@ class MassPropertiesLaw(LawOfBodies):
         return short(self)
 
 
-def ten_of(body: MassProperties) -> tuple[float, ...]:
+def _pair(name: str, pair: Any) -> list[Any]:
+    """Two names and their correlation."""
+    if not isinstance(pair, (list, tuple)) or len(pair) != 3:
+        raise ValueError(f"{name} = {pair!r}: it must be two names and a number")
+    one, other, value = pair
+    return [text(name, one), text(name, other), real(name, value)]
+
+
+def ten_of(name: str, body: MassProperties) -> tuple[float, ...]:
+    """The ten numbers of one body."""
     if not isinstance(body, MassProperties) or body.shape != ():
-        raise ValueError(f"{body!r}: it must be one MassProperties")
+        raise ValueError(f"{name} = {body!r}: it must be one MassProperties")
     return tuple(body.array.tolist())

@@ -56,7 +56,7 @@ def from_estimate(phi: ArrayLike, cov: ArrayLike, *, form: Literal["linear", "na
         ``"linear"``: m, m c, and the inertia about the origin, as identification gives them. ``"natural"``: mass, mass centre, and
         the inertia about it.
     """
-    if form not in ("linear", "natural"):
+    if not isinstance(form, str) or form not in ("linear", "natural"):
         raise ValueError(f'form = {form!r}: it must be "linear" or "natural"')
     covariance = np.array(Matrix.of("cov", cov, (10, 10)))
     nearest, moved, joint, log_cholesky = _core.from_estimate(vector("phi", phi, 10), covariance, form == "linear")

@@ -11,7 +11,7 @@ import numpy as np
 from gyradius import _core
 from gyradius._arrays import form, out, rows, text, three
 from gyradius._attitude_laws import AttitudeLaw
-from gyradius._law import Fit, LawOfBodies, Matrix, known, make, picture, short, vector
+from gyradius._law import Fit, LawOfBodies, Matrix, known, make, of_kind, picture, short, vector
 from gyradius._rng import draws_of
 from gyradius._scalar_laws import scalar
 
@@ -46,8 +46,7 @@ class InertiaLaw(LawOfBodies):
             Of the attitudes q that take body components to principal components, so that a draw is R(q)ᵀ diag(moments) R(q): see
             `fixed_attitude`.
         """
-        if not isinstance(axes, AttitudeLaw):
-            raise ValueError(f"axes = {axes!r}: it must be an AttitudeLaw")
+        of_kind("axes", axes, AttitudeLaw)
         laws = [scalar(f"roots[{i}]", law) for i, law in enumerate(three("roots", roots))]
         said = {"model": "principal", "roots": {"law": "independent", "laws_sqrt_kg_m": laws}, "axes": axes.form}
         return InertiaLaw.of(said)

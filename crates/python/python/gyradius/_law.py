@@ -150,6 +150,13 @@ def one_attitude(name: str, value: ArrayLike, order: str) -> tuple[float, ...]:
     return tuple(flat[0].tolist())
 
 
+def of_kind(name: str, value: object, kind: type) -> None:
+    """Refuses what is not of a kind, such as a law of attitudes."""
+    if not isinstance(value, kind):
+        called = kind.__name__
+        raise ValueError(f"{name} = {value!r}: it must be {'an' if called[0] in 'AEIO' else 'a'} {called}")
+
+
 class Fit(Generic[L]):
     """What was fitted to samples."""
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, Union
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import frozen, unmasked, whole
+from gyradius._arrays import frozen, text, unmasked, whole
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -51,10 +51,8 @@ class key:  # noqa: N801 - it is written as a function is
     index: NDArray[np.uint64] | None
 
     def __init__(self, seed: int, term: str = "", index: ArrayLike | None = None) -> None:
-        if not isinstance(term, str):
-            raise ValueError(f"term = {term!r}: it must be a text")
         object.__setattr__(self, "seed", whole("seed", seed, MOST))
-        object.__setattr__(self, "term", term)
+        object.__setattr__(self, "term", text("term", term))
         object.__setattr__(self, "index", None if index is None else _places(index))
 
     def __setattr__(self, name: str, value: object) -> None:

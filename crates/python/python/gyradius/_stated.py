@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from gyradius import _core
-from gyradius._arrays import form, real
+from gyradius._arrays import flag, form, real
 from gyradius._bodies import MassProperties, Region
 from gyradius._body_laws import MassPropertiesLaw, ten_of
 
@@ -194,7 +194,7 @@ def _statements(mass: Any, centre: Any, moments: Any, products: Any, axes: Any, 
 
 
 def _about(body: MassProperties, statements: _core.StatementsCore, inside: Region | None) -> StatedLaw:
-    core, warned = statements.about(ten_of(body), None if inside is None else json.dumps(inside.form))
+    core, warned = statements.about(ten_of("body", body), None if inside is None else json.dumps(inside.form))
     return _stated(core, core.form(), tuple(warned))
 
 
@@ -229,8 +229,9 @@ class StatedLaw(MassPropertiesLaw):
         >>> bool((2 * moments.max(axis=1) <= moments.sum(axis=1)).all())
         True
         """
+        is_inset = flag("inset", inset)
         drawn = super().rvs(size, rng)
-        if not inset:
+        if not is_inset:
             return drawn
         return MassProperties._of(_core.body_inset(drawn._flat()).reshape(*drawn.shape, 10))
 

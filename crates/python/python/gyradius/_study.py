@@ -11,14 +11,14 @@ import shutil
 import tempfile
 import warnings
 import weakref
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import text, whole
+from gyradius._arrays import flag, folder_or_file, listed, text, whole
 from gyradius._simulation import ABOUT, OF_VEHICLES, SOURCE, Progress, Simulation, called_with, described, progress_of
 
 # Threads that are in a study when the program ends, as those of daemons are.
@@ -197,7 +197,7 @@ class Study:
             depend on its inputs and its seed alone.
         """
         row, request, told = self._done.replay(
-            run=_whole("run", run), vehicle=_whole("vehicle", vehicle), flight=_whole("flight", flight), model=model
+            run=_whole("run", run), vehicle=_whole("vehicle", vehicle), flight=_whole("flight", flight), model=_text("model", model)
         )
         inputs = json.loads(request)["inputs"] if request else {}
         return Replay(row["model"], row["run"], row["status"], row, inputs, told)
@@ -276,7 +276,7 @@ def study(
     until: str | None = None,
     look_every: int | None = None,
     rows: str | None = None,
-    columns: Sequence[str] | None = None,
+    columns: Iterable[str] | None = None,
     drivers: int | None = None,
     out: str | os.PathLike[str] | None = None,
     threads: int | None = None,
@@ -362,13 +362,13 @@ def study(
     >>> table["range_m"].shape, bool((table["range_m"] == table["speed_m_per_s"] ** 2 / 9.81).all())
     ((500,), True)
     """
-    for flag, value in (("force", force), ("retry_failed", retry_failed), ("even_if_full", even_if_full)):
-        if not isinstance(value, (bool, np.bool_)):
-            raise ValueError(f"{flag} = {value!r}: it must be True or False")
+    flags = {"force": force, "retry_failed": retry_failed, "even_if_full": even_if_full}
+    flags = {name: flag(name, value) for name, value in flags.items()}
     if look_every is not None and until is None:
         raise ValueError(f"look_every = {look_every!r}: it goes with until, which is not given")
-    if columns is not None and (isinstance(columns, str) or not all(isinstance(one, str) for one in columns)):
-        raise ValueError(f"columns = {columns!r}: it must be a list of names")
+    kept = None if columns is None else listed("columns", columns, "names")
+    if kept is not None and not all(isinstance(one, str) for one in kept):
+        raise ValueError(f"columns = {kept!r}: it must be a list of names")
     given = None if outputs is None else [{"name": name, "unit": unit} for name, unit in _mapping("outputs", outputs)]
     if simulation is not None and not callable(simulation):
         raise ValueError(f"simulation: it must be callable, not {type(simulation).__name__}")
@@ -379,10 +379,10 @@ def study(
         runs=_whole("runs", runs),
         vehicles=_whole("vehicles", vehicles),
         seed=_whole("seed", seed),
-        until=None if until is None else text("until", until),
+        until=_text("until", until),
         look_every=_whole("look_every", look_every),
-        rows=None if rows is None else text("rows", rows),
-        columns=None if columns is None else list(columns),
+        rows=_text("rows", rows),
+        columns=kept,
         drivers=_whole("drivers", drivers),
     )
     if not core.has_vehicles and needed & OF_VEHICLES:
@@ -390,16 +390,16 @@ def study(
             f"simulation: it asks for {' and '.join(sorted(needed & OF_VEHICLES))}, and the scenario has no vehicles; what is known of "
             f"its runs is {', '.join(name for name in ABOUT if name not in OF_VEHICLES)}"
         )
-    threads = _whole("threads", threads)
-    if threads is None and called is not None:
-        threads = 1
+    on = _whole("threads", threads)
+    if on is None and called is not None:
+        on = 1
     tell, close = progress_of(progress)
     temporary = None
     if out is not None:
+        place = folder_or_file("out", out)
         if not os.fspath(out):
             # An empty path would be the current folder.
             raise ValueError('out = "": it must be the name of a folder')
-        place = Path(out)
     if place is None:
         temporary = tempfile.mkdtemp(prefix="gyradius-")
         place = Path(temporary) / core.name
@@ -407,11 +407,9 @@ def study(
         done = core.run(
             simulation=called,
             out=place,
-            threads=threads,
-            force=bool(force),
-            retry_failed=bool(retry_failed),
-            even_if_full=bool(even_if_full),
+            threads=on,
             progress=tell,
+            **flags,
         )
     except BaseException:
         if temporary is not None:
@@ -442,7 +440,7 @@ def _scenario(
         return _core.ScenarioCore.of(scenario, function, outputs), None
     if not isinstance(scenario, (str, os.PathLike)):
         raise ValueError(f"scenario: it must be a path or a dictionary, not {type(scenario).__name__}")
-    path = Path(os.fspath(scenario))
+    path = folder_or_file("scenario", scenario)
     if isinstance(scenario, str) and "\n" in scenario:
         raise ValueError(
             "scenario: a text of several lines is no path; give a dictionary, as tomllib.loads(text) makes it"
@@ -461,6 +459,10 @@ def _scenario(
 def _whole(name: str, given: Any) -> int | None:
     """A whole number that is not negative, also one that is written as ``1e6``."""
     return None if given is None else whole(name, given, MOST, of_float=True)
+
+
+def _text(name: str, given: Any) -> str | None:
+    return None if given is None else text(name, given)
 
 
 def _mapping(name: str, given: Any) -> Any:

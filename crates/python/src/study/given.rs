@@ -99,6 +99,13 @@ fn value(given: &Bound<'_, PyAny>, path: &str, depth: usize) -> PyResult<Value> 
     if given.is_instance_of::<PyString>() {
         return Ok(Value::String(given.extract()?));
     }
+    if is_law_of_quantity(path)
+        && let Some(kind) = given.getattr_opt("_kind")?
+        && kind.extract::<&str>().is_ok_and(|kind| kind != "Scalar")
+    {
+        let law = given.repr()?;
+        return Err(refused(format_args!("{path} = {law}: it must be a ScalarLaw")));
+    }
     // Laws and regions have the form that they have in files.
     for what in ["form", "tolist", "__fspath__"] {
         if let Some(form) = given.getattr_opt(what)? {
@@ -130,6 +137,12 @@ fn value(given: &Bound<'_, PyAny>, path: &str, depth: usize) -> PyResult<Value> 
     let entries =
         entries.map(|(i, entry)| value(&entry?, &format!("{path}[{}]", i + 1), depth + 1));
     Ok(Value::Array(entries.collect::<PyResult<_>>()?))
+}
+
+/// Whether the law of one of the quantities stands there, as in `quantities[1].law`.
+fn is_law_of_quantity(path: &str) -> bool {
+    let place = path.strip_prefix("quantities[").and_then(|rest| rest.strip_suffix("].law"));
+    place.is_some_and(|place| place.bytes().all(|digit| digit.is_ascii_digit()))
 }
 
 /// A message without the place in a text that no user has written.
