@@ -152,3 +152,58 @@ def test_scenarios_are_read_from_regular_files_alone(kind: str, tmp_path: Path) 
     done = subprocess.run(run, capture_output=True, text=True, timeout=60, env=environment, check=True)
     said = "it is larger than 16 MiB" if kind == "large" else "it is not a regular file"
     assert done.stdout.splitlines() == [f"{path}: {said}"] * 4
+
+
+TYPED = """
+import numpy as np
+import gyradius
+from gyradius import MassPropertiesLaw, key, normal, uniform
+
+body = gyradius.MassProperties(2.0, [0.1, 0.0, 0.0], np.diag([0.002, 0.01, 0.011]))
+one = normal(np.float32(1), np.int64(2))
+uniform(0, np.float16(2))
+one.rvs(np.int64(3), np.int64(7))
+one.rvs((2, np.int32(3)), key(np.uint64(3), "a"))
+gyradius.law(body, mass="5%", sigmas=np.int64(2)).rvs([2, 3], inset=True)
+gyradius.is_realizable(np.eye(3), tolerance=np.float32(1e-6))
+gyradius.InertiaLaw.about("wishart", np.eye(3), delta=np.float32(0.1)).rvs(np.int8(3))
+gyradius.uniform_attitude().rvs(np.int64(2))
+MassPropertiesLaw.pseudo_inertia_wishart(body, np.int64(9))
+MassPropertiesLaw.maximum_entropy(body, mass_delta=np.float32(0.1), centre_std=0.01, delta=np.float32(0.1))
+scenario = {
+    "name": "t", "runs": 10, "quantities": [{"name": "x", "unit": "m", "law": one}],
+}
+def simulate(inputs: dict[str, float]) -> dict[str, np.float32]:
+    return {"y": np.float32(inputs["x"])}
+
+done = gyradius.study(scenario, simulate, outputs={"y": "m"}, runs=np.int64(30), seed=1e1, threads=np.int32(1), columns=iter(["y"]))
+done = gyradius.study(scenario, simulate, outputs={"y": "m"}, runs=3e1)
+done.replay(np.int64(3))
+"""
+
+
+def test_what_works_has_a_type(tmp_path: Path) -> None:
+    pytest.importorskip("mypy")
+    program = tmp_path / "typed.py"
+    program.write_text(TYPED, encoding="utf-8")
+    for run in ([sys.executable, "-m", "mypy", "--strict", program.name], [sys.executable, program.name]):
+        done = subprocess.run(run, capture_output=True, text=True, cwd=tmp_path)
+        assert done.returncode == 0, done.stdout + done.stderr
+
+
+WRONGLY_TYPED = """
+import gyradius
+gyradius.normal("1", 2.0)
+gyradius.key("7")
+gyradius.uniform_attitude().rvs("3")
+gyradius.uniform_attitude().rvs(2.5)
+"""
+
+
+def test_what_does_not_work_has_none(tmp_path: Path) -> None:
+    pytest.importorskip("mypy")
+    program = tmp_path / "typed.py"
+    program.write_text(WRONGLY_TYPED, encoding="utf-8")
+    done = subprocess.run([sys.executable, "-m", "mypy", "--strict", program.name], capture_output=True, text=True, cwd=tmp_path)
+    found = [int(line.split(":")[1]) for line in done.stdout.splitlines() if ": error:" in line]
+    assert found == [3, 4, 5, 6], done.stdout

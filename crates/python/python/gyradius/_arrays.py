@@ -7,7 +7,7 @@ import operator
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, Union
 
 import numpy as np
 
@@ -15,6 +15,15 @@ from gyradius import _core
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+Whole: TypeAlias = Union[int, np.integer[Any]]
+"""A whole number, of Python or of NumPy."""
+
+Real: TypeAlias = Union[float, np.floating[Any], Whole]
+"""A number, of Python or of NumPy."""
+
+Size: TypeAlias = Union[Whole, Sequence[Whole], None]
+"""How many of something, in what shape; one if it is not said."""
 
 ORDERS = ("xyzw", "wxyz")
 

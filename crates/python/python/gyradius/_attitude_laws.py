@@ -16,6 +16,7 @@ from gyradius._rng import draws_of
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+    from gyradius._arrays import Size
     from gyradius._rng import RNG
 
 
@@ -37,7 +38,7 @@ class AttitudeLaw(Law):
 
     def rvs(
         self,
-        size: int | tuple[int, ...] | None = None,
+        size: Size = None,
         rng: RNG = None,
         *,
         order: str = "xyzw",

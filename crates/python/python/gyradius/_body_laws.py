@@ -20,6 +20,7 @@ from gyradius._scalar_laws import ScalarLaw, law_of, scalar
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from gyradius._arrays import Real, Size
     from gyradius._rng import RNG
 
 
@@ -42,9 +43,9 @@ class MassPropertiesLaw(LawOfBodies):
         roots: Sequence[Any] | None = None,
         axes: AttitudeLaw | None = None,
         inertia: InertiaLaw | None = None,
-        follows: float | None = None,
-        nominal_mass: float | None = None,
-        correlations: Iterable[tuple[str, str, float]] | None = (),
+        follows: Real | None = None,
+        nominal_mass: Real | None = None,
+        correlations: Iterable[tuple[str, str, Real]] | None = (),
         inside: Region | None = None,
     ) -> MassPropertiesLaw:
         """Mass, mass centre and inertia from laws of their own, correlated where it is said.
@@ -139,9 +140,9 @@ class MassPropertiesLaw(LawOfBodies):
     def maximum_entropy(
         mean: MassProperties,
         *,
-        mass_delta: float,
+        mass_delta: Real,
         centre_std: ArrayLike,
-        delta: float,
+        delta: Real,
         inside: Region | None = None,
     ) -> MassPropertiesLaw:
         """Gamma mass, Gaussian mass centre and Wishart second moments per unit of mass (after Batou & Soize 2012).
@@ -157,7 +158,7 @@ class MassPropertiesLaw(LawOfBodies):
         return make(MassPropertiesLaw, "maximum_entropy", ten_of("mean", mean), deltas[0], centre, deltas[1], region)
 
     @staticmethod
-    def pseudo_inertia_wishart(mean: MassProperties, degrees_of_freedom: float) -> MassPropertiesLaw:
+    def pseudo_inertia_wishart(mean: MassProperties, degrees_of_freedom: Real) -> MassPropertiesLaw:
         """The Wishart law of the pseudo-inertia about that of a body."""
         freedom = real("degrees_of_freedom", degrees_of_freedom)
         return make(MassPropertiesLaw, "pseudo_inertia_wishart", ten_of("mean", mean), freedom)
@@ -175,7 +176,7 @@ class MassPropertiesLaw(LawOfBodies):
         laws = [json.dumps(law_of(name, one).form) if name == "law" or one is not None else None for name, one in given.items()]
         return make(MassPropertiesLaw, "naive", ten_of("nominal", nominal), text("rule", rule), *laws)
 
-    def rvs(self, size: int | tuple[int, ...] | None = None, rng: RNG = None) -> MassProperties:
+    def rvs(self, size: Size = None, rng: RNG = None) -> MassProperties:
         """Draws, as `MassProperties` of the shape `size`: see `AttitudeLaw.rvs` for `rng`."""
         draws, shape = draws_of(rng, size)
         return MassProperties._of(self._core.draw(draws).reshape(*shape, 10))

@@ -12,8 +12,10 @@ from gyradius._arrays import ordered, out, real, rows, text
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+    from gyradius._arrays import Real
 
-def is_realizable(inertia: ArrayLike, tolerance: float | None = None) -> Any:
+
+def is_realizable(inertia: ArrayLike, tolerance: Real | None = None) -> Any:
     """Which inertia matrices some body has.
 
     A matrix belongs to a body if and only if its second moments ½ tr(I) 1 - I are positive semidefinite: then no
@@ -95,7 +97,7 @@ class Report(NamedTuple):
         return f"{bad} of {np.size(self.is_realizable)} not realizable"
 
 
-def report(inertia: ArrayLike, tolerance: float | None = None) -> Report:
+def report(inertia: ArrayLike, tolerance: Real | None = None) -> Report:
     """What is right and wrong with inertia matrices, in numbers and in words.
 
     Parameters
@@ -241,7 +243,7 @@ def _transposed_rotation(xyzw: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.moveaxis(np.array(entries), 2, 0)
 
 
-def _tolerance(tolerance: float | None, inertia: ArrayLike) -> float | None:
+def _tolerance(tolerance: Real | None, inertia: ArrayLike) -> float | None:
     """What is said; otherwise 64 units in the last place of the numbers, of which the compiled part knows those of 64 bits."""
     if tolerance is None:
         dtype = getattr(inertia, "dtype", None)

@@ -18,6 +18,7 @@ from gyradius._scalar_laws import scalar
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+    from gyradius._arrays import Size
     from gyradius._rng import RNG
 
 
@@ -102,7 +103,7 @@ class InertiaLaw(LawOfBodies):
         }
 
     def rvs(
-        self, size: int | tuple[int, ...] | None = None, rng: RNG = None, *, dtype: DTypeLike | None = None
+        self, size: Size = None, rng: RNG = None, *, dtype: DTypeLike | None = None
     ) -> NDArray[np.floating[Any]]:
         """Draws, shape (*size, 3, 3) in kg·m²: see `AttitudeLaw.rvs` for `rng`."""
         draws, shape = draws_of(rng, size)

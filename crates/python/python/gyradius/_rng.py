@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, Union
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import frozen, text, unmasked, whole
+from gyradius._arrays import Size, Whole, frozen, text, unmasked, whole
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -50,7 +50,7 @@ class key:  # noqa: N801 - it is written as a function is
     term: str
     index: NDArray[np.uint64] | None
 
-    def __init__(self, seed: int, term: str = "", index: ArrayLike | None = None) -> None:
+    def __init__(self, seed: Whole, term: str = "", index: ArrayLike | None = None) -> None:
         object.__setattr__(self, "seed", whole("seed", seed, MOST))
         object.__setattr__(self, "term", text("term", term))
         object.__setattr__(self, "index", None if index is None else _places(index))
@@ -80,7 +80,7 @@ class key:  # noqa: N801 - it is written as a function is
         return f"key({self.seed}, {self.term!r}{index})"
 
 
-RNG: TypeAlias = Union[None, int, np.integer[Any], np.random.SeedSequence, np.random.Generator, key]
+RNG: TypeAlias = Union[None, Whole, np.random.SeedSequence, np.random.Generator, key]
 """What random numbers may come from."""
 
 
@@ -103,7 +103,7 @@ def _places(index: ArrayLike) -> NDArray[np.uint64]:
     return frozen(np.array(array, dtype=np.uint64, order="C"))
 
 
-def shape_of(size: int | tuple[int, ...] | None) -> tuple[int, ...]:
+def shape_of(size: Size) -> tuple[int, ...]:
     """What NumPy takes a size for."""
     if size is None:
         return ()
@@ -114,7 +114,7 @@ def shape_of(size: int | tuple[int, ...] | None) -> tuple[int, ...]:
     return tuple(int(one) for one in sizes)
 
 
-def draws_of(rng: RNG, size: int | tuple[int, ...] | None) -> tuple[_core.Draws, tuple[int, ...]]:
+def draws_of(rng: RNG, size: Size) -> tuple[_core.Draws, tuple[int, ...]]:
     """Draws with their random numbers, and their shape."""
     shape = shape_of(size)
     if isinstance(rng, key) and rng.index is not None:

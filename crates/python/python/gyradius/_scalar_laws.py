@@ -16,6 +16,7 @@ from gyradius._rng import draws_of
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+    from gyradius._arrays import Real, Size
     from gyradius._rng import RNG
 
 
@@ -62,7 +63,7 @@ class ScalarLaw(Law):
         return self._core.deviation()
 
     def rvs(
-        self, size: int | tuple[int, ...] | None = None, rng: RNG = None, *, dtype: DTypeLike | None = None
+        self, size: Size = None, rng: RNG = None, *, dtype: DTypeLike | None = None
     ) -> Any:
         """Draws of the shape `size`: see `AttitudeLaw.rvs` for `rng`."""
         draws, shape = draws_of(rng, size)
@@ -107,17 +108,17 @@ def _of_each(name: str, value: ArrayLike, of: Callable[[NDArray[np.float64]], ND
     return out(of(np.ascontiguousarray(array).reshape(-1)), array.shape)
 
 
-def normal(mean: float, sigma: float) -> ScalarLaw:
+def normal(mean: Real, sigma: Real) -> ScalarLaw:
     """A normal law from its mean and standard deviation."""
     return ScalarLaw("normal", mean=real("mean", mean), sigma=real("sigma", sigma))
 
 
-def uniform(low: float, high: float) -> ScalarLaw:
+def uniform(low: Real, high: Real) -> ScalarLaw:
     """All numbers between two are equally likely."""
     return ScalarLaw("uniform", low=real("low", low), high=real("high", high))
 
 
-def scalar(name: str, value: ScalarLaw | float | Mapping[str, Any]) -> dict[str, Any]:
+def scalar(name: str, value: ScalarLaw | Real | Mapping[str, Any]) -> dict[str, Any]:
     """A law of a number, or a number that is known, in the form of files."""
     try:
         if isinstance(value, Mapping):

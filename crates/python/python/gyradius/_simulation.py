@@ -11,7 +11,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TypeAlias, Union
 
-Simulation: TypeAlias = Callable[..., Mapping[str, float]]
+from gyradius._arrays import Real
+
+Simulation: TypeAlias = Callable[..., Mapping[str, Real]]
 """What simulates a run: its inputs in, its outputs out."""
 
 Progress: TypeAlias = Union[bool, Callable[[int, int], object]]

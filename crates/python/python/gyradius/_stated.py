@@ -13,6 +13,7 @@ from gyradius._bodies import MassProperties, Region
 from gyradius._body_laws import MassPropertiesLaw, ten_of
 
 if TYPE_CHECKING:
+    from gyradius._arrays import Real, Size
     from gyradius._rng import RNG
 
 
@@ -25,7 +26,7 @@ def law(
     products: Any = None,
     axes: Any = None,
     inside: Region | None = None,
-    sigmas: float = 1.0,
+    sigmas: Real = 1.0,
 ) -> StatedLaw:
     """The law of mass, mass centre and inertia that plain statements make about a body.
 
@@ -86,7 +87,7 @@ def laws(
     products: Any = None,
     axes: Any = None,
     inside: Mapping[str, Region] | None = None,
-    sigmas: float = 1.0,
+    sigmas: Real = 1.0,
 ) -> dict[str, StatedLaw]:
     """The laws that plain statements make about the links of a robot, each about its own nominal numbers.
 
@@ -164,7 +165,7 @@ EXAMPLES = {"mass": "5%", "centre": "5mm", "moments": "10%", "products": "0.1kgm
 """What may be stated of each."""
 
 
-def _statements(mass: Any, centre: Any, moments: Any, products: Any, axes: Any, sigmas: float) -> _core.StatementsCore:
+def _statements(mass: Any, centre: Any, moments: Any, products: Any, axes: Any, sigmas: Real) -> _core.StatementsCore:
     if all(value is None for value in (mass, centre, moments, products, axes)):
         raise ValueError(
             'nothing is stated: mass="10%", centre="5mm", moments="15%" and axes="5deg" say what is uncertain'
@@ -206,7 +207,7 @@ class StatedLaw(MassPropertiesLaw):
     _warnings: tuple[str, ...]
 
     def rvs(
-        self, size: int | tuple[int, ...] | None = None, rng: RNG = None, *, inset: bool = False
+        self, size: Size = None, rng: RNG = None, *, inset: bool = False
     ) -> MassProperties:
         """Draws, as `MassProperties` of the shape `size`: see `AttitudeLaw.rvs` for `rng`.
 

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import flag, folder_or_file, listed, text, whole
+from gyradius._arrays import Real, flag, folder_or_file, listed, text, whole
 from gyradius._simulation import ABOUT, OF_VEHICLES, SOURCE, Progress, Simulation, called_with, described, progress_of
 
 # Threads that are in a study when the program ends, as those of daemons are.
@@ -175,11 +175,11 @@ class Study:
 
     def replay(
         self,
-        run: int | None = None,
+        run: Real | None = None,
         *,
         model: str | None = None,
-        vehicle: int | None = None,
-        flight: int | None = None,
+        vehicle: Real | None = None,
+        flight: Real | None = None,
     ) -> Replay:
         """Does one run again, alone, and holds it against its row, bit by bit.
 
@@ -270,16 +270,16 @@ def study(
     simulation: Simulation | None = None,
     *,
     outputs: Mapping[str, str] | None = None,
-    runs: int | None = None,
-    vehicles: int | None = None,
-    seed: int | None = None,
+    runs: Real | None = None,
+    vehicles: Real | None = None,
+    seed: Real | None = None,
     until: str | None = None,
-    look_every: int | None = None,
+    look_every: Real | None = None,
     rows: str | None = None,
     columns: Iterable[str] | None = None,
-    drivers: int | None = None,
+    drivers: Real | None = None,
     out: str | os.PathLike[str] | None = None,
-    threads: int | None = None,
+    threads: Real | None = None,
     force: bool = False,
     retry_failed: bool = False,
     even_if_full: bool = False,
