@@ -1,7 +1,7 @@
 //! Random robots in every dress: links are read in their own frames, and a copy differs in numbers alone and reads back
 //! as what was meant.
 
-use gyradius_formats::{LinkProblem, RobotError, RobotFile};
+use gyradius_formats::{LinkProblem, RobotError, RobotFile, RobotLink};
 use gyradius_inertia::{Inertia, MassProperties, SecondMoments};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use proptest::{prelude::*, sample::select};
@@ -664,7 +664,7 @@ fn names_are_told_apart_and_paths_found() {
                 <inertial/><visual><mesh><uri>meshes/a.stl</uri></mesh></visual>\
                 <mesh><uri>model://b.stl</uri></mesh></link><link><inertial/></link></sdf>";
     let file = RobotFile::parse(Path::new("a.sdf"), text.as_bytes().to_vec()).unwrap();
-    let names: Vec<&str> = file.links().iter().map(gyradius_formats::RobotLink::name).collect();
+    let names: Vec<&str> = file.links().iter().map(RobotLink::name).collect();
     assert_eq!(names, ["unnamed", "a", "a#2", "unnamed#2"]);
     assert_eq!(file.relative_paths(), ["meshes/a.stl"]);
     let text = "<mujoco><compiler meshdir='assets/'/><mesh file='a.stl'/><include file='b.xml'/>\
@@ -816,7 +816,7 @@ fn a_second_inertia_of_a_link_is_not_another_link() {
         };
         let text = format!("<{root}>{}{}{}</{root}>", one("a", 2), one("b", 1), one("a", 1));
         let file = RobotFile::parse(Path::new(name), text.into_bytes()).unwrap();
-        let names: Vec<&str> = file.links().iter().map(gyradius_formats::RobotLink::name).collect();
+        let names: Vec<&str> = file.links().iter().map(RobotLink::name).collect();
         assert_eq!(names, ["a", "a", "b", "a#2"], "{name}");
         let found: Vec<_> = file.links().iter().map(|link| link.numbers().err()).collect();
         // MuJoCo takes none of two, or the last.
@@ -835,7 +835,7 @@ fn what_is_computed_from_shapes_is_no_inertia_of_the_file() {
     let links = [link("a", " auto='true'"), link("b", " auto='false'"), link("c", "")].concat();
     let text = format!("<sdf version='1.11'><model name='m'>{links}<link name='d'/></model></sdf>");
     let file = RobotFile::parse(Path::new("a.sdf"), text.into()).unwrap();
-    let names: Vec<&str> = file.links().iter().map(|link| link.name()).collect();
+    let names: Vec<&str> = file.links().iter().map(RobotLink::name).collect();
     assert_eq!(
         (names, file.links_without_inertia()),
         (vec!["b", "c"], &["a", "d"].map(String::from)[..])
