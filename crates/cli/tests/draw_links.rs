@@ -90,6 +90,25 @@ fn matter_stays_inside_of_the_geometry() {
     assert!(message.contains("its nominal numbers are not"), "{message}");
 }
 
+/// A plate is written a little thicker than nothing, for programs that compare exactly: in a mesh without thickness no draw is
+/// possible, and the search for one never ended.
+#[test]
+fn no_plate_is_searched_for_in_a_flat_mesh() {
+    let shell = Scratch::new();
+    fs::write(shell.path("flat.obj"), "v 1 1 0\nv -1 1 0\nv -1 -1 0\nv 1 -1 0\n").unwrap();
+    let plate = "<robot><link name='panel'><inertial><mass value='12'/><inertia ixx='1' ixy='0' ixz='0' iyy='1.5' iyz='0' \
+                 izz='2.5'/></inertial><collision><geometry><mesh filename='flat.obj'/></geometry></collision></link></robot>";
+    fs::write(shell.path("a.urdf"), plate).unwrap();
+    let stated = ["a.urdf", "-n", "2", "--mass", "2%", "--moments", "2%", "--inside", "mesh"];
+    let message = refused(&shell, &stated);
+    assert!(message.contains("of 400 draws 0 are possible"), "{message}");
+    assert!(message.contains("its nominal numbers are not"), "{message}");
+    // In a thickness of a millimetre they are.
+    let thick = |z: f64| format!("v 1 1 {z}\nv -1 1 {z}\nv -1 -1 {z}\nv 1 -1 {z}\n");
+    fs::write(shell.path("flat.obj"), thick(5e-4) + &thick(-5e-4)).unwrap();
+    assert_eq!(rows(&draw(&shell, &stated)).len(), 2);
+}
+
 /// Of each link every warning is told, not the first of its kind alone: here of two second moments, the worse one last.
 #[test]
 fn no_warning_of_a_link_is_left_out() {

@@ -53,12 +53,8 @@ impl Hull {
         outer.dedup();
         let outer = outer.into_iter().map(|i| points[i]).collect();
         let mut hull = Self { points, outer, reach, size };
-        for i in 0..if hull.points.len() <= ALL { hull.points.len() } else { 0 } {
-            let point = hull.points[i];
-            // A corner that is seen from between the directions alone.
-            if !hull.holds(&point) {
-                hull.outer.push(point);
-            }
+        if hull.points.len() <= ALL {
+            hull.add_corners();
         }
         Ok(hull)
     }
@@ -74,6 +70,16 @@ impl Hull {
     /// No two points are farther apart than twice this.
     pub(super) fn size(&self) -> f64 {
         self.size
+    }
+
+    /// Takes in the corners that are seen from between the directions alone.
+    fn add_corners(&mut self) {
+        for i in 0..self.points.len() {
+            let point = self.points[i];
+            if !self.holds(&point) {
+                self.outer.push(point);
+            }
+        }
     }
 
     /// Whether a point is a mean of corners.

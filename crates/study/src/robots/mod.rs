@@ -236,14 +236,15 @@ impl DrawnLink {
         let points = robot.points_m(self.index).map_err(|problem| problem.to_string())?;
         let region = inside.about(&points).map_err(|error| format!("its geometry: {error}"))?;
         let streams = Streams::new(0, TRIALS_MODEL, &self.name);
+        // As they are written: a plate is a little thicker than a region without thickness.
         let trial =
-            |trial: &u64| inside::holds(&region, &self.law.sample(&mut streams.run(*trial)));
+            |trial: &u64| inside::holds(&region, &inset(self.law.sample(&mut streams.run(*trial))));
         // A trial in the hull of a round mesh takes milliseconds.
         let held = (0..TRIALS).filter(trial).take(LEAST_HELD).count();
         if held >= LEAST_HELD {
             return Ok(region);
         }
-        let nominal = match region.containment(self.law.nominal()) {
+        let nominal = match region.containment(&inset(*self.law.nominal())) {
             Containment::Possible => "and its nominal numbers are",
             Containment::Impossible => "and its nominal numbers are not",
             Containment::Undecided => "and of its nominal numbers it is not known",
