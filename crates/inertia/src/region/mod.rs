@@ -299,6 +299,9 @@ impl Local {
             * principal.attitude().to_rotation_matrix().matrix().transpose();
         let mass = body.mass_kg().sqrt();
         let radii = Vector3::from(body.inertia().second_moments().roots().values()) / mass;
+        // Of a plate or a rod the last bit of a moment leaves a root that is far above rounding: it is their squares that tell.
+        let least = RELATIVE_TOLERANCE * radii.norm_squared();
+        let radii = radii.map(|radius| if radius * radius <= least { 0.0 } else { radius });
         let spread = axes * Matrix3::from_diagonal(&radii.component_mul(&radii)) * axes.transpose();
         Self { centre, spread, axes, radii }
     }
