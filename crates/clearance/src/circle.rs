@@ -73,6 +73,11 @@ impl CurveAndRing {
         if left > 0.0 { square / (distance + left.sqrt()) } else { distance }
     }
 
+    /// Up to which distance rounding may be all of it, m.
+    pub(crate) fn untold(&self) -> f64 {
+        SQUARE_ROUNDING.sqrt() * self.ring.radius
+    }
+
     fn curve_body(&self) -> usize {
         1 - self.ring_body
     }

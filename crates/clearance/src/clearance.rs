@@ -307,8 +307,9 @@ fn shape_clearance<M: Motion>(
     settings: &ClearanceSettings,
     is_mated: bool,
 ) -> Result<ShapeClearance, ClearanceError> {
+    let touch = search.touch();
     let mut first = search.begin(from, to)?;
-    let mated = is_mated || first.distance <= settings.touch_m();
+    let mated = is_mated || first.distance <= touch;
     let start = if mated { parting(search, from, to, settings)? } else { Some(from) };
     let mut result = ShapeClearance {
         payload_shape: 0,
@@ -324,11 +325,10 @@ fn shape_clearance<M: Motion>(
     if mated {
         first = search.begin(start, to)?;
     }
-    let smallest = search.finish(first, settings.touch_m())?;
+    let smallest = search.finish(first, touch)?;
     let Seen { distance, time, points, .. } = smallest.seen;
-    if distance <= settings.touch_m() {
-        let Seen { time, points, .. } =
-            search.first_contact(start, smallest.seen, settings.touch_m())?;
+    if distance <= touch {
+        let Seen { time, points, .. } = search.first_contact(start, smallest.seen, touch)?;
         result.closest = Some(Approach { distance: 0.0, at_least: 0.0, time, points });
         result.contact = Some(time);
     } else {

@@ -107,6 +107,14 @@ impl Part<'_> {
         }
     }
 
+    /// Up to which distance rounding may be all of it, m.
+    pub(crate) fn untold(&self) -> f64 {
+        match &self.pair {
+            Pair::Circular(pair) => pair.untold(),
+            Pair::Convex(_) | Pair::Mixed(_) => 0.0,
+        }
+    }
+
     /// Whether it is looked at arc by arc.
     pub(crate) fn has_arcs(&self) -> bool {
         matches!(self.pair, Pair::Mixed(_))

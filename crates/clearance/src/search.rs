@@ -86,15 +86,24 @@ impl<'a, M: Motion> Search<'a, M> {
         stage: &'a OutlineShape,
         settings: &ClearanceSettings,
     ) -> Self {
+        let parts = parts(payload, stage);
+        // Large rings that touch may be seen apart by what rounding is, and twice that for the minimum to be found in.
+        let untold = parts.iter().map(Part::untold).fold(0.0, f64::max);
+        let touch = settings.touch_m().max((2.0 * untold).min(0.4 * settings.parted_m()));
         Self {
             motion,
-            parts: parts(payload, stage),
+            parts,
             tolerance: settings.tolerance_m(),
             relative: settings.relative_tolerance(),
-            touch: settings.touch_m(),
+            touch,
             heap: BinaryHeap::new(),
             nodes: 0,
         }
+    }
+
+    /// Distance up to which these shapes touch, m.
+    pub(crate) fn touch(&self) -> f64 {
+        self.touch
     }
 
     /// Nodes looked at so far.

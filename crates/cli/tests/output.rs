@@ -286,3 +286,33 @@ fn only_regular_files_of_a_sensible_size_are_read() {
         }
     }
 }
+
+/// Of a body that turns too far to be followed through the coast, nothing is said of the rest.
+#[test]
+fn a_replay_says_until_when_no_recontact_is_known() {
+    let shell = Scratch::new();
+    let body = |name: &str, mass: f64, place: f64, spin: f64| {
+        format!(
+            "[{name}.dispersion]\nroot_second_moment_variance_kg_m2 = [0.01, 0.01, 0.01]\naxes = \"fixed\"\n[{name}]\n\
+             mass_kg = {mass:?}\ninertia_kg_m2 = [[120.0, 0, 0], [0, 110.0, 0], [0, 0, 90.0]]\n\
+             position_m = [0, 0, {place:?}]\nangular_velocity_rad_per_s = [{spin:?}, 0, 0.2]\n"
+        )
+    };
+    let springs = "[[springs]]\nstiffness_n_per_m = 20000.0\nstroke_m = 0.1\n\
+                   payload_point_m = [0, 0.1, -0.9]\nstage_point_m = [0, 0.1, 0.9]\n";
+    for (spin, told) in [(200.0, "none up to 3"), (0.0, "none")] {
+        let text = format!(
+            "name = \"fast\"\nruns = 2\n{}{}{springs}[[models]]\nname = \"own\"\nlaw = \"principal\"\n\
+             axes = \"whole-sphere\"\n[clearance]\ncoast_s = 1e5\npayload = [{{ points_m = [[0, 0, 3000.0]] }}]\n\
+             stage = [{{ points_m = [[0, 3000.0, 0]] }}]\n",
+            body("payload", 500.0, 1.0, spin),
+            body("stage", 2000.0, -1.0, 0.1 * spin / 200.0),
+        );
+        fs::write(shell.path("fast.toml"), text).unwrap();
+        let said = shell.done(&["replay", "fast.toml", "--run", "0", "--force"], 0);
+        let line = said.lines().find(|line| line.contains("recontact within")).unwrap();
+        let after = line.trim_start().trim_start_matches("recontact within 100000 s").trim();
+        assert!(after.starts_with(told), "{said}");
+        assert_eq!(after.ends_with("and it is not known after"), spin > 0.0, "{said}");
+    }
+}

@@ -156,7 +156,11 @@ impl Display for Replay {
                 }
             }
             let touch = Quantity::RecontactTime.in_row(&row);
-            let touch = touch.map_or("none".to_owned(), |time| format!("at {time:.9} s"));
+            let touch = match (touch, clearance.undecided_from_s()) {
+                (Some(time), _) => format!("at {time:.9} s"),
+                (None, Some(until)) => format!("none up to {until} s, and it is not known after"),
+                (None, None) => "none".to_owned(),
+            };
             line(&format!("recontact within {} s", outlines.coast_s()), touch, "")?;
         }
         line("energy of the springs", value(Quantity::SpringEnergy), " J")?;
