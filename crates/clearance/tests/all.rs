@@ -6,3 +6,4 @@ mod clearance;
 mod following;
 mod forms;
 mod pairs;
+mod rings;
