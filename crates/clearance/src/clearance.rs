@@ -325,10 +325,10 @@ fn shape_clearance<M: Motion>(
     if mated {
         first = search.begin(start, to)?;
     }
-    let smallest = search.finish(first, touch)?;
+    let smallest = search.finish(first)?;
     let Seen { distance, time, points, .. } = smallest.seen;
     if distance <= touch {
-        let Seen { time, points, .. } = search.first_contact(start, smallest.seen, touch)?;
+        let Seen { time, points, .. } = search.first_contact(start, smallest.seen)?;
         result.closest = Some(Approach { distance: 0.0, at_least: 0.0, time, points });
         result.contact = Some(time);
     } else {

@@ -285,16 +285,12 @@ impl<'a, M: Motion> Search<'a, M> {
     }
 
     /// Goes on after [`Search::begin`]: the smallest distance of the span to within the tolerance, or
-    /// some distance of at most `enough`. `best` is the smallest known.
-    pub(crate) fn finish(
-        &mut self,
-        mut best: Seen,
-        enough: f64,
-    ) -> Result<Smallest, ClearanceError> {
+    /// some distance at which the shapes touch. `best` is the smallest known.
+    pub(crate) fn finish(&mut self, mut best: Seen) -> Result<Smallest, ClearanceError> {
         // What could not be decided for lack of digits.
         let mut undecided = f64::INFINITY;
         while let Some(node) = self.heap.pop() {
-            if best.distance <= enough {
+            if best.distance <= self.touch {
                 return Ok(Smallest { seen: best, at_least: 0.0 });
             }
             let target = best.distance - self.slack(&self.parts[node.part], best.distance);
@@ -327,13 +323,8 @@ impl<'a, M: Motion> Search<'a, M> {
         Ok(Smallest { seen: best, at_least })
     }
 
-    /// The first time on [from, known.time] at which the distance is at most `touch`, `known` being one.
-    pub(crate) fn first_contact(
-        &mut self,
-        from: f64,
-        known: Seen,
-        touch: f64,
-    ) -> Result<Seen, ClearanceError> {
+    /// The first time on [from, known.time] at which the shapes touch, `known` being one.
+    pub(crate) fn first_contact(&mut self, from: f64, known: Seen) -> Result<Seen, ClearanceError> {
         let mut earliest = known;
         self.start(from, known.time, from);
         // By when the distance may have changed by a tenth of the tolerance.
@@ -349,7 +340,7 @@ impl<'a, M: Motion> Search<'a, M> {
             }
             let node = Node { to: node.to.min(earliest.time), ..node };
             // A hair more than the touch counts as such: what lies between is not to be split for ever.
-            let target = touch + 1e-3 * touch;
+            let target = self.touch + 1e-3 * self.touch;
             let (children, look) = match self.examine(&node, target, f64::INFINITY)? {
                 Step::Proven => continue,
                 Step::Tiny(look) => ([None; 2], Some(look)),

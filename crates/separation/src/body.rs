@@ -19,7 +19,7 @@ pub enum BodyError {
     /// The inertia matrix is singular or has a negative moment.
     #[error(
         "inertia with principal moments {:?}, {:?} and {:?} kg·m²: all three must be positive, \
-         and the smallest more than rounding of the largest (1.4e-14), for the body to turn",
+         and the smallest more than 1.4e-14 of the largest, for the body to turn",
         .moments[0], .moments[1], .moments[2]
     )]
     NotPositiveDefinite {

@@ -169,8 +169,8 @@ pub enum PartsProblem {
     },
     /// A column that looks like a standard deviation of a size of a shape.
     #[error(
-        "column {heading:?} speaks of how far a size may be off, and sizes have no standard deviation here: it must be left out, \
-         and what it means for the inertia stands in sigma_ or _percent of ixx, moments and so on"
+        "column {heading:?} speaks of how far a size may be off, and sizes have no standard deviation here: the column must be left \
+         out, and what it means for the inertia can be stated as sigma_ or _percent of ixx, moments and so on"
     )]
     SizeDeviation {
         /// The heading.

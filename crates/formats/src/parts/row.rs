@@ -262,11 +262,15 @@ impl Cells<'_> {
             if message.starts_with("unknown variant") {
                 message = message.replacen("expected one of ", "expected one of `point`, ", 1);
             }
-            if message.contains("array of length") || message.contains("sequence") {
+            // Of a number in place of several, and the other way round, the message does not say which size it is.
+            let is_several = message.contains("array of length");
+            if is_several || message.contains("sequence") {
                 let given = self.given(of).map(|((size, _), cell)| format!("{size} = {cell:?}"));
                 let given: Vec<String> = given.collect();
                 message += "; given are ";
                 message += &given.join(", ");
+            }
+            if is_several {
                 message += ", and a size of several numbers has them all in one cell, as `1 1 2`";
             }
             PartsProblem::Shape { message }

@@ -183,6 +183,10 @@ fn what_a_row_lacks_is_named() {
              numbers has them all in one cell, as `1 1 2`",
         ),
         (
+            "name,mass,cx,cy,cz,shape,radius_m\na,1,0,0,0,sphere,1 2\n",
+            "line 2: a: shape: invalid type: sequence, expected f64; given are radius_m = \"1 2\"",
+        ),
+        (
             "name,mass,cx,cy,cz,kx_m,ky_m,kz_m\na,1,0,0,0,1,1e200,1\n",
             "line 2: a: ky = 1e200: it must be zero or more, and small enough",
         ),

@@ -218,7 +218,7 @@ impl Region {
                     return Containment::Possible;
                 }
                 // A body with an extent in all directions needs none but means of what is known to be in the region.
-                let is_flat = local.radii.min() <= DIGITS * local.radii.amax();
+                let is_flat = local.radii.min() == 0.0;
                 let inside = |x: &Vector3<f64>| is_flat && hull.holds(x);
                 let own = local.on_own_axes(inside, |n| hull.exit(&local.centre, n));
                 local.decide(corners.into_iter().chain(own), size)
@@ -285,7 +285,7 @@ struct Local {
     spread: Matrix3<f64>,
     /// Columns are principal axes.
     axes: Matrix3<f64>,
-    /// √(K_k/m).
+    /// √(K_k/m), zero where that is rounding.
     radii: Vector3<f64>,
 }
 
@@ -337,7 +337,7 @@ impl Local {
     ) -> Vec<Vector3<f64>> {
         let steps = [0, 1, 2].map(|k| {
             let axis: Vector3<f64> = self.axes.column(k).into();
-            if self.radii[k] <= DIGITS * self.radii.amax() {
+            if self.radii[k] == 0.0 {
                 return vec![(Vector3::zeros(), 0.0)];
             }
             let [there, back] = [axis, -axis].map(|n| n * (exit(&n) * (1.0 - DIGITS)));

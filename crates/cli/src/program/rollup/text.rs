@@ -99,20 +99,20 @@ fn contributions(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
     }
     writeln!(out, "\nwhich parts the variance (σ²) by first order comes from")?;
     for i in 0..10 {
-        let share =
-            |(name, shares): &(&str, [Option<f64>; 10])| Some((shares[i]?, name.to_string()));
-        let mut of: Vec<(f64, String)> = parts.iter().filter_map(share).collect();
+        let mut of: Vec<(f64, &str)> =
+            parts.iter().filter_map(|(name, shares)| Some((shares[i]?, *name))).collect();
         // The order of the names where shares are the same.
         of.sort_by(|a, b| b.0.total_cmp(&a.0));
         let rest = of.split_off(of.partition_point(|(share, _)| *share >= 0.01).min(3));
         let total: f64 = rest.iter().map(|(share, _)| share).sum();
         let others = rest.iter().filter(|(share, _)| *share > 0.0).count();
-        if total >= 0.005 {
-            let name = if others == 1 { rest[0].1.clone() } else { format!("{others} others") };
-            of.push((total, name));
+        let percent = |name: &str, share: f64| format!("{name} {:.0} %", 100.0 * share);
+        let mut texts: Vec<String> = of.iter().map(|(share, name)| percent(name, *share)).collect();
+        match others {
+            _ if total < 0.005 => {}
+            1 => texts.push(percent(rest[0].1, total)),
+            _ => texts.push(percent(&format!("{others} others"), total)),
         }
-        let texts: Vec<String> =
-            of.iter().map(|(share, name)| format!("{name} {:.0} %", 100.0 * share)).collect();
         if !texts.is_empty() {
             writeln!(out, "  {:<16} {}", TenParameters::COLUMNS[i], texts.join(", "))?;
         }
