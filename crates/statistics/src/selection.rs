@@ -82,8 +82,9 @@ impl Selection {
             selection.open.clear();
         } else if sample.len() as u64 == n {
             let mut below = UnitSum::default();
+            let mut open = std::mem::take(&mut selection.open).into_iter().peekable();
             for (rank, x) in (0..).zip(sample) {
-                if selection.open.remove(&rank) {
+                if open.next_if_eq(&rank).is_some() {
                     selection.found.insert(rank, (*x, below));
                 }
                 below.add(centred.map_or(0.0, |centred| centred.map(*x)));

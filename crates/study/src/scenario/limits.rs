@@ -112,17 +112,21 @@ fn at_most(field: &str, count: usize, most: usize) -> Result<(), ScenarioError> 
 }
 
 /// How far out a shape is, m, and the key that says most of it.
-fn reach(shape: &ShapeFile) -> (&'static str, f64) {
+fn reach(shape: &ShapeFile) -> (String, f64) {
     // Not the norm, which overflows.
     let largest = |p: &[f64; 3]| p.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-    let of_all = |p: &[[f64; 3]]| p.iter().map(largest).fold(0.0, f64::max);
+    let of_all = |key: &str, points: &[[f64; 3]]| {
+        let points = (1..).zip(points).map(|(i, p)| (i, largest(p)));
+        let (i, reach) = points.fold((1, 0.0), |far, p| if p.1 > far.1 { p } else { far });
+        (format!("{key}[{i}]"), reach)
+    };
     match shape {
-        ShapeFile::PointsM(p) => ("points_m", of_all(p)),
-        ShapeFile::HullM(p) => ("hull_m", of_all(p)),
+        ShapeFile::PointsM(p) => of_all("points_m", p),
+        ShapeFile::HullM(p) => of_all("hull_m", p),
         ShapeFile::Ring { centre_m, radius_m, .. } => {
             let (centre, radius) = (largest(centre_m), radius_m.abs());
             let key = if centre > radius { "ring.centre_m" } else { "ring.radius_m" };
-            (key, centre + radius)
+            (key.to_owned(), centre + radius)
         }
     }
 }
