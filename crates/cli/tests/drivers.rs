@@ -112,6 +112,25 @@ fn drivers_go_on_after_a_kill() {
     assert!(!scratch.path("less/.gyradius/drivers").exists());
 }
 
+/// Shards find no drivers: whoever puts them together is told, each time, and so is who asks what is there.
+#[test]
+fn drivers_that_shards_leave_are_told() {
+    let scratch = Scratch::new();
+    let text = format!("drivers = 100\n{}", one_model());
+    fs::write(scratch.path("it.toml"), text).unwrap();
+    let shard = ["study", "it.toml", "--runs", "100", "--out", "it", "--shard", "1/1"];
+    scratch.done(&shard, 0);
+    let left = "What drives the outcome is not found yet";
+    for _ in 0..2 {
+        let said = scratch.done(&["report", "it"], 0);
+        assert!(said.contains(&left.to_lowercase()), "{said}");
+        assert!(scratch.done(&["status", "it"], 0).contains(left));
+    }
+    scratch.done(&["study", "it.toml", "--runs", "100", "--out", "it"], 0);
+    assert!(!scratch.done(&["report", "it"], 0).contains(&left.to_lowercase()));
+    assert!(!scratch.done(&["status", "it"], 0).contains(left));
+}
+
 #[test]
 fn too_few_base_runs_are_refused() {
     let scratch = Scratch::new();

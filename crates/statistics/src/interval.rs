@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::StatisticsError;
+use crate::{StatisticsError, law};
 
 /// A confidence level, strictly between 0 and 1; 0.95 by default.
 ///
@@ -30,6 +30,16 @@ impl Confidence {
     /// The level.
     pub fn level(self) -> f64 {
         self.0
+    }
+
+    /// How many standard errors an interval reaches to either side where the error is found from as many degrees of freedom
+    /// (Student's t): NaN if these are not positive.
+    pub fn errors(self, degrees_of_freedom: f64) -> f64 {
+        if degrees_of_freedom > 0.0 {
+            law::students_t(self.tail(), degrees_of_freedom)
+        } else {
+            f64::NAN
+        }
     }
 
     /// The probability left to either side, `(1 − level)/2`.
@@ -166,6 +176,19 @@ mod tests {
         }
         assert_eq!(Confidence::default(), Confidence::new(0.95).unwrap());
         assert_eq!(f64::from(Confidence::try_from(0.5).unwrap()), 0.5);
+    }
+
+    /// Table of Student's t, NIST/SEMATECH e-Handbook of Statistical Methods, 1.3.6.7.2.
+    #[test]
+    fn errors_are_those_of_students_t() {
+        for (freedom, expected) in [(1.0, 12.706), (2.0, 4.303), (11.0, 2.201), (100.0, 1.984)] {
+            let errors = Confidence::default().errors(freedom);
+            assert!((errors - expected).abs() < 5e-4, "{freedom}: {errors}");
+        }
+        assert!((Confidence::default().errors(1e9) - 1.959_963_98).abs() < 1e-6);
+        for freedom in [0.0, -1.0, f64::NAN] {
+            assert!(Confidence::default().errors(freedom).is_nan());
+        }
     }
 
     #[test]

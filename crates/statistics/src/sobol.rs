@@ -1,9 +1,9 @@
 //! Which groups of inputs drive an output: Sobol' indices by pick-freeze.
 
-mod frequent;
+mod carried;
 mod joint;
 
-use frequent::Frequent;
+use carried::Parts;
 use joint::Joint;
 
 use crate::{Confidence, Estimate, Interval, StatisticsError, law};
@@ -24,8 +24,12 @@ const BC: usize = 7;
 const DD: usize = 8;
 /// Deviations from the first output up to this need no new scale.
 const LARGE: f64 = (1_u64 << 60) as f64;
-/// Outputs that differ from the most frequent one, with all inputs from A or all from B: of fewer no index is known.
-const FEW: u64 = 40;
+/// Effective number of runs by which the variance of the output is known: of fewer no index is known.
+const FEW: f64 = 50.0;
+/// Effective number of parts, of 32, that an index rests on: fewer are one or two runs.
+const FEW_PARTS: f64 = 2.0;
+/// An index that cannot be so large counts for nothing, whatever it rests on.
+const LEAST: f64 = 0.02;
 /// The most groups.
 const MAX_GROUPS: usize = 100_000;
 
@@ -39,9 +43,12 @@ const MAX_GROUPS: usize = 100_000;
 ///   c_g have the group in common and nothing else, so that S_g is their correlation. It is estimated as
 ///   `r(b, c) = (mean(b c) − m²) / (mean((b² + c²)/2) − m²)` with `m = mean((b + c)/2)`, which is asymptotically
 ///   efficient for such pairs (Janon, Klein, Lagnoux, Nodet & Prieur 2014, doi:10.1051/ps/2013040, eq. 2.6), less
-///   `λ r(a, b)`. The latter is 0 in truth, for A and B are independent, and λ is chosen for the least variance (a
-///   control variate; λ = 1 is the estimator of Saltelli et al. 2010, doi:10.1016/j.cpc.2009.09.018, table 2b, but for
-///   normalisation). So a group that moves little has an estimate near 0 and not ± 1/√n.
+///   `λ r(a, b)`. The latter is 0 in truth, for A and B are independent, and `λ = r(a, c) (1 − S_g²)` has the least
+///   variance of normal outputs (a control variate, by the covariance of correlations of Pearson & Filon 1898,
+///   doi:10.1098/rsta.1898.0007; λ = 1 is the estimator of Saltelli et al. 2010, doi:10.1016/j.cpc.2009.09.018, table 2b, but
+///   for normalisation). So a group that moves little has an estimate near 0 and not ± 1/√n. A λ that is found from the scatter
+///   of the two correlations follows the few runs that both of them rest on where an output is seldom anything but 0, and draws the
+///   estimate to 0 with them.
 /// * The **total index** `T_g = E[Var(y | all but g)] / V` is the share of the variance that would be left if all but the
 ///   group were known, interactions included: `mean((a − c)²) / 2` (Jansen 1999, doi:10.1016/S0010-4655(98)00154-4) over the
 ///   variance of the pair, `mean((a² + c²)/2) − m²`. It is `1 − r(a, c)`, which is efficient in the same sense. If the group
@@ -52,11 +59,11 @@ const MAX_GROUPS: usize = 100_000;
 /// concerned (Fisher's transformation with this standard error in the place of his). Estimates are never clipped: one of an
 /// index that is 0 may be negative. Clip what is shown: [`Estimate::clipped`].
 ///
-/// Coverage at a nominal 95 %, counted over 400 repetitions: 91 % to 97 % for smooth functions, steps and indicators of
+/// Coverage at a nominal 95 %, counted over 400 repetitions: 91 % to 97 % for functions with light tails, steps and indicators of
 /// frequent events from 100 to 1000 base runs, indices of 0, 1e-4 and 1 included. It is weaker for outputs with heavy
-/// tails, for the fourth moment must be finite, and for indicators of rare events (0 or 1: whether a requirement
-/// was failed): with 20 failures among the runs with A it is 84 %, and with a handful none of the numbers should be
-/// trusted: [`is_of_few`](SobolIndices::is_of_few) says so. An index so near 0 that few runs show any difference has an interval that is too narrow.
+/// tails, for the fourth moment must be finite, for indicators of rare events (0 or 1: whether a requirement
+/// was failed), and for faults that multiply something: with 20 failures among the runs with A it is 84 %, and with a handful none of
+/// the numbers should be trusted: [`is_of_few`](SobolIndices::is_of_few) says so. An index so near 0 that few runs show any difference has an interval that is too narrow.
 ///
 /// A run that failed has no output: give `None`. A group then leaves out the base runs of which a, b or c_g is missing,
 /// and says [how many](SobolIndex::left_out). The indices are then those of runs that succeed, among which the groups are no
@@ -93,11 +100,16 @@ pub struct SobolSums {
     /// A power of two by which deviations from it are multiplied; none while all are 0.
     scale: Option<f64>,
     range: (f64, f64),
-    /// Of the outputs with all inputs from A, and with all from B.
-    outputs: Joint<1>,
-    /// The values among the same.
-    frequent: Frequent,
-    groups: Vec<Joint<STATISTICS>>,
+    /// Of the outputs with all inputs from A, and with all from B, and of their squares.
+    outputs: Joint<2>,
+    groups: Vec<Group>,
+}
+
+/// What is gathered for one group.
+#[derive(Clone, Debug)]
+struct Group {
+    joint: Joint<STATISTICS>,
+    parts: Parts,
 }
 
 impl SobolSums {
@@ -116,8 +128,7 @@ impl SobolSums {
             scale: None,
             range: (f64::INFINITY, f64::NEG_INFINITY),
             outputs: Joint::new(),
-            frequent: Frequent::default(),
-            groups: vec![Joint::new(); groups],
+            groups: vec![Group { joint: Joint::new(), parts: Parts::new() }; groups],
         })
     }
 
@@ -147,17 +158,18 @@ impl SobolSums {
         for y in present() {
             self.make_room_for(y);
         }
-        [all_from_a, all_from_b].into_iter().flatten().for_each(|y| self.frequent.add(y));
         let scaled = |y: Option<f64>| Some((y? - self.shift?) * self.scale.unwrap_or(1.0));
         let (a, b) = (scaled(all_from_a), scaled(all_from_b));
         for y in [a, b].into_iter().flatten() {
-            self.outputs.add(&[y]);
+            self.outputs.add(&[y, y * y]);
         }
         let (Some(a), Some(b)) = (a, b) else { return Ok(()) };
         for (group, c) in self.groups.iter_mut().zip(one_from_b) {
             if let Some(c) = scaled(*c) {
                 let d = a - c;
-                group.add(&[a, b, c, a * a, b * b, c * c, a * b, b * c, d * d]);
+                let statistics = [a, b, c, a * a, b * b, c * c, a * b, b * c, d * d];
+                group.joint.add(&statistics);
+                group.parts.add(&statistics);
             }
         }
         Ok(())
@@ -175,9 +187,12 @@ impl SobolSums {
         let scale = libm::ldexp(1.0, -exponent.clamp(-1000, 1000));
         if let Some(before) = self.scale {
             let factor = scale / before;
-            self.outputs.rescale(&[factor]);
+            self.outputs.rescale(&[factor, factor * factor]);
             let factors = DEGREES.map(|degree| libm::pow(factor, f64::from(degree)));
-            self.groups.iter_mut().for_each(|group| group.rescale(&factors));
+            for group in &mut self.groups {
+                group.joint.rescale(&factors);
+                group.parts.rescale(&factors);
+            }
         }
         self.scale = Some(scale);
     }
@@ -195,20 +210,19 @@ impl SobolSums {
         }
         let Some(scale) = self.scale else { return Err(StatisticsError::Constant) };
         let n = self.outputs.n() as f64;
-        let standard_deviation = (self.outputs.covariance(&[1.0], &[1.0]) * n).sqrt() / scale;
+        let variance = self.outputs.covariance(&[1.0, 0.0], &[1.0, 0.0]) * n;
+        let standard_deviation = variance.sqrt() / scale;
         let mean = self.outputs.mean()[0] / scale + self.shift.unwrap_or(0.0);
         if !(standard_deviation.is_finite() && mean.is_finite()) {
             return Err(StatisticsError::TooSpread { minimum, maximum });
         }
-        let index = |group: &Joint<STATISTICS>| SobolIndex {
-            runs: group.n(),
-            left_out: self.runs - group.n(),
-            first: first(group, confidence),
-            total: total(group, confidence),
-        };
-        let groups = self.groups.iter().map(index).collect();
-        let apart = self.frequent.others();
-        Ok(SobolIndices { runs: self.runs, mean, standard_deviation, apart, groups })
+        let groups = self.groups.iter().map(|group| group.index(self.runs, confidence)).collect();
+        // The variance of the squares of the deviations, of which the fourth moment is made.
+        let slopes = [-2.0 * self.outputs.mean()[0], 1.0];
+        let of_squares = self.outputs.covariance(&slopes, &slopes).max(0.0) * n;
+        let kurtosis = 1.0 + of_squares / (variance * variance);
+        let effective_runs = if kurtosis.is_nan() { 0.0 } else { n / kurtosis };
+        Ok(SobolIndices { runs: self.runs, mean, standard_deviation, effective_runs, groups })
     }
 }
 
@@ -223,8 +237,9 @@ pub struct SobolIndices {
     mean: f64,
     /// Standard deviation of the same.
     standard_deviation: f64,
-    /// How many of the same differ from the most frequent of them: of whether something happens, how often the rarer of both is.
-    apart: u64,
+    /// By how many runs the variance of the same is known: so many are n outputs over their kurtosis, a third of them for
+    /// normal ones. Of whether something happens that is rare, it is how often it happened.
+    effective_runs: f64,
     #[getset(skip)]
     groups: Vec<SobolIndex>,
 }
@@ -232,7 +247,7 @@ pub struct SobolIndices {
 crate::checked::checked!(SobolIndices, |read| {
     let runs = |group: &SobolIndex| group.left_out.checked_add(group.runs);
     let whole = read.groups.iter().all(|group| runs(group) == Some(read.runs));
-    let is_of_runs = read.apart <= read.runs.saturating_mul(2);
+    let is_of_runs = (0.0..=2.0 * read.runs as f64).contains(&read.effective_runs);
     crate::error::belong(whole && is_of_runs && read.standard_deviation >= 0.0, "study")
 });
 
@@ -242,10 +257,11 @@ impl SobolIndices {
         self.standard_deviation * self.standard_deviation
     }
 
-    /// Whether fewer than 40 outputs with all inputs from A or all from B differ from the most frequent one, as of something that seldom happens: the
-    /// indices may lie far beyond 0 and 1 then, and their intervals miss the truth far more often than they say.
+    /// Whether the variance of the output is known by fewer than 50 [effective runs](Self::effective_runs), as of something that seldom
+    /// happens or of heavy tails, or [an index](SobolIndex::is_of_few) rests on one or two runs: the indices may lie far beyond
+    /// 0 and 1 then, and their intervals miss the truth far more often than they say.
     pub fn is_of_few(&self) -> bool {
-        self.apart < FEW
+        self.effective_runs < FEW || self.groups.iter().any(SobolIndex::is_of_few)
     }
 
     /// The index of each group, in the order in which they were pushed.
@@ -266,6 +282,9 @@ pub struct SobolIndex {
     left_out: u64,
     first: Option<Estimate>,
     total: Option<Estimate>,
+    /// Whether one or two runs carry the first-order index or the total one, and it may be more than 0.02.
+    #[getset(get_copy = "pub")]
+    is_of_few: bool,
 }
 
 impl SobolIndex {
@@ -308,35 +327,56 @@ fn correlation(mean: &[f64; STATISTICS], pair: Pair, product: usize) -> Option<S
     Some(Smooth { value, gradient })
 }
 
-fn first(group: &Joint<STATISTICS>, confidence: Confidence) -> Option<Estimate> {
+impl Group {
+    fn index(&self, runs: u64, confidence: Confidence) -> SobolIndex {
+        let found = [first(&self.joint, confidence), total(&self.joint, confidence)];
+        let is_of_few = found.iter().flatten().any(|(index, estimate)| {
+            let parts = self.parts.effective(self.joint.mean(), &index.gradient);
+            estimate.interval().upper() >= LEAST && parts.is_some_and(|n| n < FEW_PARTS)
+        });
+        let [first, total] = found.map(|index| index.map(|(_, estimate)| estimate));
+        let runs_of_group = self.joint.n();
+        SobolIndex { runs: runs_of_group, left_out: runs - runs_of_group, first, total, is_of_few }
+    }
+}
+
+fn first(group: &Joint<STATISTICS>, confidence: Confidence) -> Option<(Smooth, Estimate)> {
     let mut index = correlation(group.mean(), ([B, C], [BB, CC]), BC)?;
     if group.mean()[DD] == 0.0 && group.n() > 1 {
         // The group moves nothing: what the sums below round to is not asked for.
-        return Some(Estimate::new(0.0, Interval::ordered(0.0, 0.0, confidence)));
+        let none = Smooth { value: 0.0, gradient: [0.0; STATISTICS] };
+        return Some((none, Estimate::new(0.0, Interval::ordered(0.0, 0.0, confidence))));
     }
-    if let Some(zero) = correlation(group.mean(), ([A, B], [AA, BB]), AB) {
-        let variance = group.covariance(&zero.gradient, &zero.gradient);
-        let weight = group.covariance(&index.gradient, &zero.gradient) / variance;
-        if weight.is_finite() {
-            index.value -= weight * zero.value;
-            index.gradient.iter_mut().zip(zero.gradient).for_each(|(to, of)| *to -= weight * of);
-        }
+    let zero = correlation(group.mean(), ([A, B], [AA, BB]), AB);
+    if let (Some(zero), Some(total)) = (zero, distance_of_pair(group.mean())) {
+        // Twice, for the first index is as far off as r(a, b).
+        let weight_of = |first: f64| (1.0 - total.value) * (1.0 - first * first);
+        let weight = weight_of(index.value - weight_of(index.value) * zero.value);
+        index.value -= weight * zero.value;
+        index.gradient.iter_mut().zip(zero.gradient).for_each(|(to, of)| *to -= weight * of);
     }
     let (least, most) = distance(group, 1.0 - index.value, &index.gradient, confidence)?;
     let (lower, upper) = ((1.0 - most).min(index.value), (1.0 - least).max(index.value));
-    Some(reaching(index.value, (lower, upper), confidence))
+    let estimate = reaching(index.value, (lower, upper), confidence);
+    Some((index, estimate))
 }
 
-fn total(group: &Joint<STATISTICS>, confidence: Confidence) -> Option<Estimate> {
-    let mean = group.mean();
+fn total(group: &Joint<STATISTICS>, confidence: Confidence) -> Option<(Smooth, Estimate)> {
+    let index = distance_of_pair(group.mean())?;
+    let (lower, upper) = distance(group, index.value, &index.gradient, confidence)?;
+    let estimate = reaching(index.value, (lower, upper), confidence);
+    Some((index, estimate))
+}
+
+/// By how much the correlation of a and c is below 1, from their differences.
+fn distance_of_pair(mean: &[f64; STATISTICS]) -> Option<Smooth> {
     let (middle, variance) = pooled(mean, ([A, C], [AA, CC]))?;
     let value = mean[DD] / (2.0 * variance);
     let mut gradient = [0.0; STATISTICS];
     [A, C].into_iter().for_each(|i| gradient[i] = value * middle / variance);
     [AA, CC].into_iter().for_each(|i| gradient[i] = -value / (2.0 * variance));
     gradient[DD] = 1.0 / (2.0 * variance);
-    let (lower, upper) = distance(group, value, &gradient, confidence)?;
-    Some(reaching(value, (lower, upper), confidence))
+    Some(Smooth { value, gradient })
 }
 
 /// No index is below 0 or above 1, and the interval of an estimate beyond them reaches there: those of a rare flag that one group decides

@@ -469,7 +469,7 @@ impl fmt::Display for StudyOutcome {
                 });
                 let shares = shares.collect::<Vec<_>>().join(", ");
                 let (output, model) = (&driven.output, &drivers.model);
-                let few = if driven.indices.is_of_few() { "; too few runs differ" } else { "" };
+                let few = if driven.indices.is_of_few() { "; too few runs count" } else { "" };
                 writeln!(
                     f,
                     "what fails {output}, {model}, by total Sobol' indices: {shares}{few}\n"

@@ -70,20 +70,25 @@ impl Fleet {
     pub fn first_flights(
         table: ForeignTable,
     ) -> Result<(ForeignTable, Option<Cow<'static, str>>), ForeignError> {
-        const LOST: &str = "the table has the columns vehicle and flight, but not the column run of a study's run table: all rows are \
-                            judged as runs that are independent of each other; with the column run, the first flight of each vehicle is \
-                            judged";
         const OTHER: &str = "the columns run, vehicle and flight do not belong together as in the run table of a study, where the run is \
                              the vehicle times the flights of each plus the flight, all from 0: all rows are judged as runs that are \
                              independent of each other, which flights of one vehicle need not be";
         let [vehicle, flight] = Self::columns().map(|column| column.name().to_owned());
         let names = [Column::RUN.to_owned(), vehicle, flight];
-        let has = |name: &String| table.columns().contains(name);
-        if table.campaign().is_some() || !names[1..].iter().all(has) {
+        let of_vehicles = |name: &&String| name.trim().eq_ignore_ascii_case(&names[1]);
+        let Some(vehicles) = table.columns().iter().find(of_vehicles) else {
+            return Ok((table, None));
+        };
+        if table.campaign().is_some() {
             return Ok((table, None));
         }
-        if !has(&names[0]) {
-            return Ok((table, Some(LOST.into())));
+        if !names.iter().all(|name| table.columns().contains(name)) {
+            let lost = format!(
+                "the table has the column {vehicles}, but not all three columns run, vehicle and flight of a study's run table: all rows are \
+                 judged as runs that are independent of each other, which flights of one vehicle need not be; with the three, the first \
+                 flight of each vehicle is judged"
+            );
+            return Ok((table, Some(lost.into())));
         }
         let mut seen = SeenFlights::default();
         let read = table.scan_beside(&[], &names, |columns| {

@@ -111,6 +111,19 @@ impl RareEstimate {
         }
     }
 
+    /// What counts of its runs are not, in words, where they need not be plain.
+    fn as_drawn(&self) -> &'static str {
+        let is_plain = match self {
+            Self::Subset(_) => false,
+            Self::Importance { steered, .. } => steered.is_empty(),
+        };
+        if is_plain {
+            ""
+        } else {
+            "; runs near the event are done more often than they happen, so that this is no share of all runs"
+        }
+    }
+
     /// How the runs were done, in words.
     fn runs(&self) -> String {
         let all = self.evaluations();
@@ -193,7 +206,8 @@ impl fmt::Display for Rare {
         }
         writeln!(f)?;
         if *failed > 0 {
-            writeln!(f, "  failed       {failed} runs")?;
+            let run = if *failed == 1 { "run" } else { "runs" };
+            writeln!(f, "  failed       {failed} {run}{}", self.estimate.as_drawn())?;
         }
         let without = estimate.without_excess();
         if without > 0 {
@@ -202,7 +216,8 @@ impl fmt::Display for Rare {
                 1 => ("1 run has".to_owned(), "is"),
                 runs => (format!("{runs} runs have"), "are"),
             };
-            writeln!(f, "  no number    {runs} no {quantity}, and {are} not the event")?;
+            let as_drawn = self.estimate.as_drawn();
+            writeln!(f, "  no number    {runs} no {quantity}, and {are} not the event{as_drawn}")?;
         }
         // A group of several inputs has commas in its name.
         match estimate {

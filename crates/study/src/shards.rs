@@ -14,7 +14,7 @@ use crate::{
     head::Missing,
     results::no_study,
     scenario::scenario_text,
-    study::{count, foretell, plan, same_as_before},
+    study::{count, foretell, lacks_drivers, plan, same_as_before, whole_summary},
     subject::Subject,
     unfinished::{begun_study, replacement},
 };
@@ -160,6 +160,8 @@ pub struct Status {
     pub scenario: String,
     /// Whether all runs are done and put together.
     pub complete: bool,
+    /// Whether it is asked what drives the outcome, and not found yet, although they are: shards do not.
+    pub drivers_left: bool,
     /// Runs that each model is to have.
     pub runs_per_model: u64,
     /// What of each model is there.
@@ -213,11 +215,13 @@ impl Status {
             // It is written when all is put together.
             Some(_) => None,
         };
+        let complete =
+            missing.is_empty() && blocks.iter().all(Block::is_in_place) && changed.is_none();
+        let lacks = |summary: C::Summary| lacks_drivers(scenario, &summary);
         Ok(Self {
             scenario: scenario.name().to_owned(),
-            complete: missing.is_empty()
-                && blocks.iter().all(Block::is_in_place)
-                && changed.is_none(),
+            complete,
+            drivers_left: complete && whole_summary::<C>(folder).is_some_and(lacks),
             changed,
             runs_per_model: scenario.runs(),
             models,

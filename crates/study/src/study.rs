@@ -135,6 +135,9 @@ pub(crate) fn do_what_is_left<C: Subject>(
         if options.force {
             say(Notice::Finished);
         }
+        if doing == Doing::Nothing && lacks_drivers(scenario, &study.summary) {
+            say(Notice::DriversLeft);
+        }
         return Ok(study);
     }
     if left > 0 && doing == Doing::All {
@@ -300,7 +303,7 @@ fn reduced<C: Subject>(
 }
 
 /// The summary of a complete study in a folder, if it is there.
-fn whole_summary<C: Subject>(place: &Path) -> Option<C::Summary> {
+pub(crate) fn whole_summary<C: Subject>(place: &Path) -> Option<C::Summary> {
     let read = fs::read_to_string(place.join("summary.json")).ok()?;
     let summary = serde_json::from_str::<C::Summary>(&read).ok()?;
     summary.head().is_complete().then_some(summary)
@@ -357,6 +360,11 @@ pub(crate) fn foretell<C: Subject>(
         Some(left) => Err(StudyError::Memory { needed, left }),
         None => Ok(()),
     }
+}
+
+/// Whether it is asked what drives the outcome, and not found.
+pub(crate) fn lacks_drivers<C: Subject>(scenario: &C, summary: &C::Summary) -> bool {
+    scenario.drivers().is_some() && summary.head().drivers.is_empty()
 }
 
 /// The study in a folder, if all of it is there as it was written, what drives its outcome too if that is asked: then whether it

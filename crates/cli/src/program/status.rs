@@ -39,6 +39,11 @@ fn text(status: &Status, folder: &Path) -> String {
     let missing = &status.missing;
     if status.complete {
         text.push_str("All runs are done and put together.\n");
+        if status.drivers_left {
+            text.push_str(
+                "What drives the outcome is not found yet: `gyradius study` with the scenario finds it in this folder.\n",
+            );
+        }
     } else if let Some(changed) = &status.changed {
         let _ = writeln!(text, "The study is not complete: {changed}.");
     } else if missing.is_empty() {

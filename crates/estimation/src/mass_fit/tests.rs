@@ -148,6 +148,19 @@ fn what_follows_the_mass_is_found() {
     }
 }
 
+/// Of thirteen bodies, the fewest, the power is held as often as it should be.
+#[test]
+fn the_power_of_few_bodies_is_held() {
+    let truth = truth(normal(12.0, 0.9)).with_correlation(&[]).unwrap();
+    let held = |seed: u64| {
+        let fit = MassPropertiesFit::new(&draws(&truth, 13, seed), MassChoice::default()).unwrap();
+        let power = fit.ties().unwrap().power();
+        power.low() < 1.0 && 1.0 < power.high()
+    };
+    let held = (0..300).filter(|seed| held(*seed)).count();
+    assert!((281..=295).contains(&held), "{held} of 300");
+}
+
 #[test]
 fn what_cannot_be_fitted_is_refused() {
     let bodies = draws(&truth(normal(12.0, 0.6)), 30, 4);

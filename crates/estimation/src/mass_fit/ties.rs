@@ -1,6 +1,7 @@
 //! How the inertia of samples goes with their mass.
 
 use gyradius_inertia::Inertia;
+use gyradius_statistics::Confidence;
 
 use crate::fit::{PrincipalFit, RootEstimate};
 
@@ -49,7 +50,8 @@ impl MassTies {
             Some(sizes) => {
                 let slope = masses.product(&sizes) / masses.square();
                 let rest = (sizes.square() - slope * slope * masses.square()).max(0.0);
-                let reach = NORMAL_95 * (rest / (n - 2.0) / masses.square()).sqrt();
+                let error = (rest / (n - 2.0) / masses.square()).sqrt();
+                let reach = Confidence::default().errors(n - 2.0) * error;
                 let estimate = 1.0 + slope;
                 Tie { estimate, low: estimate - reach, high: estimate + reach }
             }

@@ -20,8 +20,8 @@ const MOST_LOST: usize = 3;
 /// A search for the law of scores under which an event is least rare, by the cross-entropy method (Rubinstein & Kroese 2004,
 /// doi:10.1007/978-1-4757-4321-0), in steps: it asks for runs, which may be done in any order, and is told their outcomes.
 ///
-/// The first level has plain runs. If a tenth of them are the event, it is not rare: the search ends, and nothing is steered. Else the tenth of them that comes nearest to the event leads on: the next law is fitted to
-/// their scores, weighted as the own law has them, and a tenth of the own law is kept. Fewer lead on, 30, where a tenth comes no nearer: where most
+/// The first level has plain runs. If a tenth of them are the event, it is not rare: the search ends, and nothing is steered. Else the tenth of them that comes nearest to the event leads on, where nothing is known of
+/// events that scores decide: the next law is fitted to their scores, weighted as the own law has them, and a tenth of the own law is kept. Fewer lead on, 30, where a tenth comes no nearer: where most
 /// runs draw what no score leads to. Level by level the runs come nearer, until 30 or more are the event. Two last levels then fit
 /// the law to all runs that are the event.
 ///
@@ -54,7 +54,7 @@ pub struct ScoreSearch {
 
 impl ScoreSearch {
     /// It takes no more levels where there is one way to the event.
-    pub const LEVELS_OF_ONE_WAY: usize = (INDEPENDENT + 1) * WaySearch::MOST_LEVELS;
+    pub const LEVELS_OF_ONE_WAY: usize = 1 + (INDEPENDENT + 1) * WaySearch::MOST_LEVELS;
 
     /// With so many scores, and runs of a level.
     ///
@@ -66,9 +66,10 @@ impl ScoreSearch {
     }
 
     fn of(plan: WaySearch) -> Self {
+        let plain = plan.plain();
         Self {
-            law: plan.law.clone(),
-            now: Some(plan.clone()),
+            law: plain.law.clone(),
+            now: Some(plain),
             plan,
             done: Vec::new(),
             evaluations: 0,
@@ -86,7 +87,7 @@ impl ScoreSearch {
     }
 
     /// Of scores in these places is known that they decide events: that of a probability happens where the score is in its upper tail of this
-    /// probability. Then the event itself is made more frequent, and from the first level on.
+    /// probability. Then the event itself is made more frequent, and from the second level on.
     ///
     /// # Errors
     ///
@@ -112,13 +113,17 @@ impl ScoreSearch {
             return crate::rank_correlation::same_length(0, runs.len());
         };
         now.tell(runs)?;
-        let is_first = self.evaluations == 0 && self.law.is_own();
+        let is_first = self.evaluations == 0;
         self.evaluations += runs.len() as u64;
         self.without_excess += runs.iter().filter(|run| run.1.is_nan()).count() as u64;
         let events = runs.iter().filter(|run| run.1 >= 0.0).count();
         if is_first && FREQUENT * events >= runs.len() {
             self.now = None;
             return Ok(());
+        }
+        if is_first && !self.plan.law.is_own() {
+            // What was plain has told that the event is rare, and not what the events do.
+            *now = self.plan.clone();
         }
         if now.ended().is_some() {
             self.done.extend(self.now.take());

@@ -125,7 +125,10 @@ fn sums_of_scores_down_to_a_ten_millionth() {
 #[test]
 fn what_nearly_always_happens_is_told_from_one() {
     let plan = Plan { per_level: 300, sample: 1000, ..PLAN };
-    for missed in [0.45, 0.1, 1e-2, 1e-3, 1e-5] {
+    // Whether or not a score is known to decide something.
+    let plans = [plan, Plan { events: &[(0, 1e-3)], ..plan }];
+    let cases = [0.45, 0.1, 1e-2, 1e-3, 1e-5].into_iter();
+    for (missed, plan) in cases.flat_map(|missed| plans.map(|plan| (missed, plan))) {
         let truth = 1.0 - missed;
         let limit = -crate::law::normal(missed);
         let found: Vec<SteeredEstimate> =
@@ -134,6 +137,7 @@ fn what_nearly_always_happens_is_told_from_one() {
         for one in &found {
             assert!(one.probability() <= 1.0 && one.interval().upper() <= 1.0, "{one:?}");
             assert!(one.interval().contains(one.probability()), "{one:?}");
+            assert_eq!(one.evaluations(), 1300);
         }
         let squares = |of: &dyn Fn(&SteeredEstimate) -> f64| {
             (found.iter().map(|one| of(one).powi(2)).sum::<f64>() / 40.0).sqrt()

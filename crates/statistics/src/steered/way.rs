@@ -145,6 +145,12 @@ impl WaySearch {
         })
     }
 
+    /// The same where nothing is known of events that scores decide: it begins with plain runs.
+    pub(super) fn plain(&self) -> Self {
+        let scores = self.start.len();
+        Self { start: vec![Single::OWN; scores], law: ScoreLaw::own(scores), ..self.clone() }
+    }
+
     /// As [`ScoreSearch::with_least`](super::ScoreSearch::with_least).
     pub(super) fn with_least(self, least: f64) -> Result<Self, StatisticsError> {
         Ok(Self { least: share(least)?, ..self })

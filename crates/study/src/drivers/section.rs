@@ -68,19 +68,21 @@ pub(crate) fn told(total: &Estimate) -> String {
     if total.value().abs() < 1e-12 { "0".to_owned() } else { estimate(total, 2) }
 }
 
-/// Which outputs of a model are nearly always the same, so that their indices are not known.
+/// Of which outputs of a model the indices are not known, because few runs carry them.
 fn of_few(drivers: &Drivers) -> Option<Text> {
     let few: Vec<&Driven> = drivers.outputs.iter().filter(|d| d.indices.is_of_few()).collect();
     let named = few.iter().take(NAMED);
-    let named = named.map(|driven| format!("{} ({})", driven.label(), driven.indices.apart()));
+    let named = named.map(|driven| {
+        format!("{} ({:.0})", driven.label(), driven.indices.effective_runs())
+    });
     let named: Vec<String> = named.collect();
     let others = match few.len().saturating_sub(NAMED) {
         0 => String::new(),
         others => format!(" and {others} more"),
     };
     let (all, model) = (2 * drivers.base_runs, &drivers.model);
-    let text = Text::default().strong(format!("{model}: too few runs differ")).plain(format!(
-        " in {}{others}: in brackets is how many of the {all} runs with a single draw of everything differ from the most frequent value. The indices may lie far beyond 0 and 1, and their intervals miss the truth far more often than they say. Take more base runs.",
+    let text = Text::default().strong(format!("{model}: too few runs count")).plain(format!(
+        " in {}{others}: few runs lie far from the others, or bring out what two groups do together. In brackets is by how many of the {all} runs with a single draw of everything the variance is known. The indices may lie far beyond 0 and 1, and their intervals miss the truth far more often than they say. Take more base runs.",
         named.join(", ")
     ));
     (!few.is_empty()).then_some(text)

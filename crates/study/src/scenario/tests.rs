@@ -478,8 +478,8 @@ fn scenarios_have_limits() {
             let ring =
                 format!("{{ centre_m = {centre:?}, axis = [0.0, 0.0, 1.0], radius_m = 0.25 }}");
             for (key, shape) in [
-                ("points_m", format!("points_m = [{point:?}]")),
-                ("hull_m", format!("hull_m = [[0.0, 0.0, 0.1], {point:?}]")),
+                ("points_m[1]", format!("points_m = [{point:?}]")),
+                ("hull_m[2]", format!("hull_m = [[0.0, 0.0, 0.1], {point:?}]")),
                 ("ring.centre_m", format!("ring = {ring}")),
             ] {
                 let outlines = format!(
