@@ -204,7 +204,7 @@ fn every_script_is_read_by_bash() {
         "--threads=3",
         "--partition=x y",
         "--account='",
-        "--mem=$1",
+        "--mem=4GB",
         "--max-tasks=5",
         "--logs=logs\n\u{1b}[1m",
     ];
@@ -263,6 +263,12 @@ fn what_cannot_be_submitted_is_refused() {
         (&["--out", "x", "--threads", "0"], "0 is not in 1..=1024"),
         (&["--out", "x", "--max-tasks", "0"], "0 is not in 1.."),
         (&["--out", "x", "--partition", ""], "a value is required"),
+        (&["--out", "x", "--time", "abc"], "it must be minutes, minutes:seconds"),
+        (&["--out", "x", "--time", "1-2-3"], "it must be minutes"),
+        (&["--out", "x", "--time", "1:2:3:4"], "it must be minutes"),
+        (&["--out", "x", "--time", ""], "it must be minutes"),
+        (&["--out", "x", "--mem", "2 G"], "it must be a whole number of megabytes"),
+        (&["--out", "x", "--mem", "G"], "it must be a whole number of megabytes"),
         (&["--out", "x", "--runs", "0"], "runs: 0: it must be between 1"),
         (&["--out", ".."], "--logs must say where the logs go"),
         (

@@ -404,11 +404,11 @@ pub(crate) struct SlurmArgs {
     pub(crate) account: Option<String>,
 
     /// Time limit of a task, and of the report, as of sbatch [default: five times the forecast, and ten minutes; with a simulator of your own it must be given]
-    #[arg(long, value_name = "TIME", value_parser = NonEmptyStringValueParser::new())]
+    #[arg(long, value_name = "TIME", value_parser = time_limit)]
     pub(crate) time: Option<String>,
 
     /// Memory of a task, and of the report, as of sbatch [default: that of the cluster]
-    #[arg(long, value_name = "SIZE", value_parser = NonEmptyStringValueParser::new())]
+    #[arg(long, value_name = "SIZE", value_parser = memory)]
     pub(crate) mem: Option<String>,
 
     /// Folder of the logs [default: beside that of the study, with -slurm at the end of its name]
@@ -799,6 +799,32 @@ fn whole(text: &str) -> Result<u64, String> {
              with all its digits"
         )
     })
+}
+
+/// A time limit as `sbatch` has it (Slurm's manual page of sbatch, `--time`).
+fn time_limit(text: &str) -> Result<String, String> {
+    let number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    let parts = |text: &str, most: usize| {
+        let parts: Vec<&str> = text.split(':').collect();
+        parts.len() <= most && parts.into_iter().all(number)
+    };
+    let is_time = match text.split_once('-') {
+        Some((days, rest)) => number(days) && parts(rest, 3),
+        None => parts(text, 3) || text.eq_ignore_ascii_case("unlimited"),
+    };
+    let allowed = "it must be minutes, minutes:seconds, hours:minutes:seconds, days-hours, days-hours:minutes, days-hours:minutes:seconds \
+                   or UNLIMITED";
+    if is_time { Ok(text.to_owned()) } else { Err(allowed.to_owned()) }
+}
+
+/// A size of memory as `sbatch` has it: megabytes, or a number with a unit.
+fn memory(text: &str) -> Result<String, String> {
+    let number = text.strip_suffix(['b', 'B']).unwrap_or(text);
+    let number = number.strip_suffix(['k', 'K', 'm', 'M', 'g', 'G', 't', 'T']).unwrap_or(number);
+    if !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit()) {
+        return Ok(text.to_owned());
+    }
+    Err("it must be a whole number of megabytes, or one with K, M, G or T after it, as 4G".to_owned())
 }
 
 /// A level of a comparison in percent of the largest moment: 5 or 5%.

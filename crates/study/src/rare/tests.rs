@@ -183,7 +183,7 @@ fn runs_without_a_number_are_no_step() {
             // Where every spring fails, the run does too.
             assert!(found.failed() < without && without < estimate.evaluations());
             let said = format!(
-                "  no number    {without} runs have no spring_2_release_s, and are not the event\n"
+                "  no number    {without} runs have no spring_2_release_s, and are not the event"
             );
             assert!(found.to_string().contains(&said), "{found}");
             assert_eq!(found.to_string().contains("\n  failed "), found.failed() > 0, "{found}");

@@ -52,7 +52,7 @@ fn directions_and_outlines_are_read_resolved_and_checked() {
         radius_m = 0.3 | radius_m = nan | clearance.stage[1].ring.radius_m: ring radius = NaN m: it must
         [0.0, 1.0, 7.0] | [0.0, 0.0, 0.0] | clearance.stage[1].ring.axis: ring axis of length 0.0: it
         [0.5, 0.0, -0.5] | [nan, 0.0, 0.0] | clearance.payload[1].hull_m: hull_m has coordinate NaN m
-        [0.5, 0.0, -0.5] | [0.0, 1e300, 0.0] | clearance.payload[1].hull_m[1]: 1e300 m from the mass centre: it must be at most 10000.0 m
+        [0.5, 0.0, -0.5] | [0.0, 1e300, 0.0] | clearance.payload[1].hull_m[2]: 1e300 m from the mass centre: it must be at most 10000.0 m
         points_m = [[0.0, 0.0, 0.3]] | points_m = [] | clearance.stage[2].points_m: points_m is empty
         [0.0, 0.0, 0.3]] | MANY | clearance.stage[2].points_m: 1001 points in an outline: at most
         payload = [{ hull_m = [[0.0, 0.0, -0.5], [0.5, 0.0, -0.5]] }] | payload = [] | clearance.payload: outline is empty

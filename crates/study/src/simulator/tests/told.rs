@@ -116,7 +116,7 @@ proptest! {
     }
 }
 
-/// Outputs that are nearly always the same are named where their drivers are told, and no others.
+/// Outputs whose variance few runs carry are named where their drivers are told, and no others.
 #[test]
 fn drivers_of_what_seldom_happens_are_warned_of() {
     let folder = folder();
@@ -143,7 +143,7 @@ fn drivers_of_what_seldom_happens_are_warned_of() {
     let out = folder.path().join("out");
     scenario.study(&Options::to(out.clone()), &|_| {}, &|_| {}).unwrap();
     let page = fs::read_to_string(out.join("report.md")).unwrap();
-    let warning = page.lines().find(|line| line.contains("too few runs differ")).unwrap();
+    let warning = page.lines().find(|line| line.contains("too few runs count")).unwrap();
     assert!(
         warning.contains("in fails: up to 0.98 (") && warning.contains("seldom ("),
         "{warning}"
