@@ -6,7 +6,7 @@ use gyradius_statistics::Interval;
 use crate::Drawing;
 use crate::axis::{Spacing, Tick, Units, decades, ticks};
 use crate::field::{ACROSS, Field, HIGH, band_pen, line_pen, required_pen};
-use crate::lines::marker;
+use crate::lines::{mark_pen, marker};
 use crate::style;
 use crate::svg::px;
 use crate::text::significant;
@@ -68,7 +68,7 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)], looks: &[u64]) 
         field.entry(*model, |swatch| {
             swatch.path(&band_pen(i), "M0 -6h26v12h-26z");
             swatch.path(&line_pen(i), "M0 0h26");
-            swatch.path(&format!("fill=\"{}\"", style::model(i)), &marker(i, 13.0, 0.0));
+            swatch.path(&mark_pen(i), &marker(i, 13.0, 0.0));
         });
     }
     field.plot.path(&required_pen(), &format!("M0 {}h{}", y(allowed), px(ACROSS)));
@@ -95,8 +95,7 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)], looks: &[u64]) 
             above.push(format!("{model}: up to {highest} % in the first runs, above this axis."));
         }
         field.plot.path(&line_pen(i), &d);
-        let colour = style::model(i);
-        field.plot.path(&format!("fill=\"{colour}\" stroke=\"{colour}\""), &marks);
+        field.plot.path(&mark_pen(i), &marks);
     }
     if !looks.is_empty() {
         let ticks = looks.iter().map(|runs| place((*runs as f64).log10()));

@@ -161,19 +161,11 @@ fn draw(svg: &mut Svg, chart: &Chart, scale: &Scale, origin: (f64, f64), marks: 
     releases(svg, origin, until, marks);
 
     for curve in &chart.curves {
-        let mut d = String::new();
-        let mut last = f64::NEG_INFINITY;
-        let points: Vec<_> = shown(curve, chart.until).collect();
-        for (k, (time, value)) in points.iter().enumerate() {
-            let across = x(*time);
-            // More points than pixels show nothing more.
-            if across - last >= 0.75 || k + 1 == points.len() {
-                let pen = if d.is_empty() { 'M' } else { 'L' };
-                let height = y(scale.share(scale.units.of(*value)));
-                d.push_str(&format!("{pen}{} {}", px(across), px(height)));
-                last = across;
-            }
-        }
+        let place = |(time, value)| (x(time), y(scale.share(scale.units.of(value))));
+        let points = thinned(shown(curve, chart.until).map(place));
+        let pen = |k: usize| if k == 0 { 'M' } else { 'L' };
+        let pieces = points.iter().enumerate();
+        let d: String = pieces.map(|(k, p)| format!("{}{} {}", pen(k), px(p.0), px(p.1))).collect();
         svg.path(&format!("stroke=\"{}\" stroke-width=\"1.5\"", curve.hue.colour().pen), &d);
     }
 
@@ -194,6 +186,48 @@ fn draw(svg: &mut Svg, chart: &Chart, scale: &Scale, origin: (f64, f64), marks: 
         svg.text(across, top - 20.0, look, name);
         across += wide + 10.0;
     }
+}
+
+/// Of the points of a curve on the page, in the order of time, those that show: no more than two in each step across, the
+/// lowest and the highest, so that what swings faster than that is seen as wide as it swings.
+fn thinned(points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
+    const ACROSS: f64 = 0.75;
+    const SEEN: f64 = 0.4;
+    let mut kept: Vec<(f64, f64)> = Vec::new();
+    // The lowest and the highest of a step, and its last.
+    let mut step: Option<[(f64, f64); 3]> = None;
+    let mut end = f64::NEG_INFINITY;
+    let mut close = |step: Option<[(f64, f64); 3]>| {
+        let Some([low, high, last]) = step else { return };
+        if high.1 - low.1 > SEEN {
+            kept.extend(if low.0 <= high.0 { [low, high] } else { [high, low] });
+        } else {
+            kept.push(last);
+        }
+    };
+    for point in points {
+        match &mut step {
+            Some([low, high, last]) if point.0 < end => {
+                *last = point;
+                if point.1 < low.1 {
+                    *low = point;
+                }
+                if point.1 > high.1 {
+                    *high = point;
+                }
+            }
+            _ => {
+                close(step.replace([point; 3]));
+                end = point.0 + ACROSS;
+            }
+        }
+    }
+    let last = step.map(|[_, _, last]| last);
+    close(step);
+    if let Some(last) = last.filter(|last| kept.last() != Some(last)) {
+        kept.push(last);
+    }
+    kept
 }
 
 /// Dashed lines where loads let go, and which: together where they have no room apart.
@@ -260,6 +294,40 @@ mod tests {
         }
         assert!(!seen.contains("\n4\n"), "beyond the axis: {seen}");
         assert!(svg.len() < 60_000, "{} bytes", svg.len());
+    }
+
+    /// However fast a curve swings, it is drawn as wide as it swings, everywhere and with few points; and it ends where it ends.
+    #[test]
+    fn what_swings_fast_is_as_wide_as_it_swings() {
+        for points in [50_u32, 400, 3000, 40_000] {
+            for turns in [1.0, 7.0, 151.0, 2000.0_f64] {
+                let per_turn = f64::from(points) / turns;
+                if per_turn < 9.0 {
+                    continue;
+                }
+                let at = |k: u32| {
+                    let share = f64::from(k) / f64::from(points);
+                    (372.0 * share, 50.0 + 40.0 * (turns * share * std::f64::consts::TAU).sin())
+                };
+                let kept = thinned((0..=points).map(at));
+                assert!(kept.len() <= 1000 && kept.is_sorted_by(|a, b| a.0 <= b.0));
+                assert_eq!(kept.last(), Some(&at(points)));
+                // In each piece of the page as long as a turn, or as two steps across.
+                let piece = f64::max(1.1 * 372.0 / turns, 1.5);
+                let mut from = 0.0;
+                while from + piece <= 372.0 {
+                    let here =
+                        kept.iter().filter(|p| (from..from + piece).contains(&p.0)).map(|p| p.1);
+                    let (low, high) = here
+                        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
+                    assert!(
+                        high - low > 70.0,
+                        "{points} points, {turns} turns: {low} to {high} at {from}"
+                    );
+                    from += piece;
+                }
+            }
+        }
     }
 
     #[test]

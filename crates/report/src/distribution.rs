@@ -8,7 +8,7 @@ use gyradius_statistics::tail;
 use crate::Drawing;
 use crate::axis::Tick;
 use crate::field::{ACROSS, Across, Field, HIGH, band_pen, line_pen, required_pen};
-use crate::lines::marker;
+use crate::lines::{mark_pen, marker};
 use crate::numbers::digits_of;
 use crate::style;
 use crate::svg::{Svg, px};
@@ -45,7 +45,7 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)]) -> String {
         field.entry(*model, |swatch| {
             swatch.path(&band_pen(place), "M0 -6h26v12h-26z");
             swatch.path(&line_pen(place), "M0 0h26");
-            swatch.path(&format!("fill=\"{}\"", style::model(place)), &marker(place, 13.0, 0.0));
+            swatch.path(&mark_pen(place), &marker(place, 13.0, 0.0));
         });
     }
     let limits: Vec<f64> = requirement.bound().limits().collect();
@@ -214,9 +214,7 @@ fn line(svg: &mut Svg, model: usize, judgement: &Judgement, across: &Across, up:
         }
     }
     svg.path(&line_pen(model), &d);
-    let colour = style::model(model);
-    // Crossed lines have no inside.
-    svg.path(&format!("fill=\"{colour}\" stroke=\"{colour}\""), &marks);
+    svg.path(&mark_pen(model), &marks);
 }
 
 /// Where the required share keeps the bound; of two bounds both.

@@ -156,7 +156,7 @@ pub(crate) fn band_pen(model: usize) -> String {
 
 /// The line of a model.
 pub(crate) fn line_pen(model: usize) -> String {
-    format!("stroke=\"{}\" stroke-width=\"1.6\"", style::model(model))
+    format!("stroke=\"{}\" stroke-width=\"1.6\"{}", style::model(model), style::dashes(model))
 }
 
 #[cfg(test)]

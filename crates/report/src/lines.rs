@@ -181,7 +181,8 @@ fn entries(panels: &[LinePanel]) -> Vec<Entry> {
 }
 
 fn pen(line: &Line) -> String {
-    let dashes = if line.dashed { " stroke-dasharray=\"5 3\"" } else { "" };
+    let own = style::dashes(line.colour);
+    let dashes = if line.dashed { " stroke-dasharray=\"5 3\"" } else { &own };
     format!("stroke=\"{}\" stroke-width=\"1.6\"{dashes}", style::model(line.colour))
 }
 
@@ -191,15 +192,23 @@ fn marker_pen(line: &Line, hollow: bool) -> String {
     format!("fill=\"{fill}\" stroke=\"{colour}\" stroke-width=\"1.4\"")
 }
 
-/// A shape for each colour, for those who do not tell the colours apart.
-pub(crate) fn marker(shape: usize, x: f64, y: f64) -> String {
+/// The pen of the markers of a model, of which crossed lines have no inside.
+pub(crate) fn mark_pen(model: usize) -> String {
+    let colour = style::model(model);
+    format!("fill=\"{colour}\" stroke=\"{colour}\"")
+}
+
+/// The shape of a model, for those who do not tell the colours apart; and one shape more than there are colours, so that models
+/// of one colour have other shapes.
+pub(crate) fn marker(model: usize, x: f64, y: f64) -> String {
     let from = |dx: f64, dy: f64| format!("M{} {}", px(x + dx), px(y + dy));
-    match shape {
+    match model % 7 {
         1 => from(-2.5, -2.5) + "h5v5h-5z",
         2 => from(0.0, -3.7) + "l3.7 3.7l-3.7 3.7l-3.7 -3.7z",
         3 => from(0.0, -3.6) + "l3.5 6h-7z",
         4 => from(0.0, 3.6) + "l3.5 -6h-7z",
         5 => from(-3.0, -3.0) + "l6 6m0 -6l-6 6",
+        6 => from(-3.2, -3.2) + "h6.4l-6.4 6.4h6.4z",
         _ => from(-2.7, 0.0) + "a2.7 2.7 0 1 0 5.4 0a2.7 2.7 0 1 0 -5.4 0",
     }
 }

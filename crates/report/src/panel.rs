@@ -24,7 +24,8 @@ pub(crate) fn outline_pen(model: usize) -> String {
     let colour = style::model(model);
     format!(
         "fill=\"{colour}\" fill-opacity=\"0.16\" stroke=\"{colour}\" stroke-width=\"1.3\" \
-         stroke-linejoin=\"miter\""
+         stroke-linejoin=\"miter\"{}",
+        style::dashes(model)
     )
 }
 
@@ -224,9 +225,15 @@ impl<'a> Cell<'a> {
             svg.runs(frame.middle(), y - 3.0, NOTE.at(Anchor::Middle), runs);
         };
         // Texts in the colours of their series, on one line if they have room.
+        let by_colour = self.models.iter().all(|model| style::is_told_by_colour(model + 1));
         let mut tell = |what: &str, of: Vec<Option<String>>| {
-            let said: Vec<(usize, String)> =
-                of.into_iter().enumerate().filter_map(|(i, text)| Some((i, text?))).collect();
+            let named = |(i, text): (usize, Option<String>)| {
+                let text = text?;
+                // Of models with the same colour it says which.
+                let name = &self.panel.series[i].name;
+                Some((i, if by_colour { text } else { format!("{name}: {text}") }))
+            };
+            let said: Vec<(usize, String)> = of.into_iter().enumerate().filter_map(named).collect();
             let whole: String = said.iter().map(|(_, text)| format!("{text} · ")).collect();
             let room = frame.width + GUTTER;
             let together = width(what, NOTE.size) + width(&whole, NOTE.size) <= room;

@@ -47,6 +47,22 @@ pub(crate) fn model_colour(index: usize) -> Colour {
     MODELS[index % MODELS.len()]
 }
 
+/// What tells the lines of models apart that have the same colour: none but the first of each is solid.
+const DASHES: [&str; 5] = ["", "7 2", "2 2", "9 2 2 2", "4 3 1 3"];
+
+/// The dashes of the line of a model, as an attribute that follows others.
+pub(crate) fn dashes(model: usize) -> String {
+    match DASHES[model / MODELS.len() % DASHES.len()] {
+        "" => String::new(),
+        dashes => format!(" stroke-dasharray=\"{dashes}\""),
+    }
+}
+
+/// Whether a colour alone says which of so many models is meant.
+pub(crate) fn is_told_by_colour(models: usize) -> bool {
+    models <= MODELS.len()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -74,6 +90,27 @@ mod tests {
         let c = colour.map(|x| 0.92 - 0.84 * x);
         let rows = [[-0.574, 1.43, 0.144], [0.426, 0.43, 0.144], [0.426, 1.43, -0.856]];
         rows.map(|row| (0..3).map(|i| row[i] * c[i]).sum::<f64>().clamp(0.0, 1.0))
+    }
+
+    /// No two of thirty models have the same line, the same bars or the same marker of the same colour; and what has no inside
+    /// is drawn as a line, in legends too.
+    #[test]
+    fn thirty_models_are_told_apart() {
+        use crate::{
+            field::line_pen,
+            lines::{mark_pen, marker},
+            panel::outline_pen,
+        };
+        use std::collections::BTreeSet;
+        let different =
+            |of: &dyn Fn(usize) -> String| (0..30).map(of).collect::<BTreeSet<_>>().len();
+        assert_eq!(different(&line_pen), 30);
+        assert_eq!(different(&outline_pen), 30);
+        assert_eq!(different(&|model| marker(model, 0.0, 0.0) + model_colour(model).pen), 30);
+        for model in 0..30 {
+            let pen = mark_pen(model);
+            assert!(marker(model, 0.0, 0.0).ends_with('z') || pen.contains("stroke="), "{pen}");
+        }
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use gyradius_report::{AttitudeSpheres, Cloud, Figure, HistogramGrid, Panel, Picture, Series};
 use rayon::prelude::*;
+use std::{collections::BTreeSet, iter};
 
 use crate::{
     body::{Body, Entry},
@@ -9,7 +10,7 @@ use crate::{
     configuration::CONFIGURATION,
     decisions, drivers,
     quantity::Quantity,
-    scenario::Scenario,
+    scenario::{Comparison, Scenario},
     seen::Seen,
     summary::Summary,
 };
@@ -22,19 +23,31 @@ const INERTIA_OF_STAGE: &str = "figure-5-8-stage";
 const ANGLES: &str = "figure-6-9";
 const CLEARANCE: &str = "clearance";
 
-fn of_pair(name: &str, physical: &str, naive: &str) -> String {
-    format!("{name}-{physical}-vs-{naive}")
+/// How the names of the figures of each comparison end: by its two models. Where two would be the same, also on a disk that
+/// does not tell `A` from `a`, later ones have a number too; names of models may hold `-vs-` and end in numbers.
+fn pairs(scenario: &Scenario) -> Vec<String> {
+    let models: Vec<&str> = scenario.model_names().collect();
+    let mut taken = BTreeSet::new();
+    let own = |comparison: &Comparison| {
+        let pair = format!("{}-vs-{}", models[comparison.physical], models[comparison.naive]);
+        let numbered = (2_usize..).map(|number| format!("{pair}-{number}"));
+        let mut free = iter::once(pair.clone()).chain(numbered);
+        free.find(|name| taken.insert(name.to_lowercase())).unwrap_or(pair)
+    };
+    scenario.comparisons().iter().map(own).collect()
+}
+
+fn of_pair(name: &str, pair: &str) -> String {
+    format!("{name}-{pair}")
 }
 
 /// The names of all figures that a study of a scenario may have: known before the runs, so that what is
 /// in their way is.
 pub(crate) fn names(scenario: &Scenario) -> Vec<String> {
     let mut names = [ATTITUDES, CLEARANCE, EVERY_MODEL, CONFIGURATION].map(str::to_owned).to_vec();
-    let models: Vec<&str> = scenario.model_names().collect();
-    for comparison in scenario.comparisons() {
-        let (physical, naive) = (models[comparison.physical], models[comparison.naive]);
+    for pair in pairs(scenario) {
         let paired = [RATIO_AND_WOBBLE, INERTIA_OF_PAYLOAD, INERTIA_OF_STAGE, ANGLES];
-        names.extend(paired.map(|name| of_pair(name, physical, naive)));
+        names.extend(paired.map(|name| of_pair(name, &pair)));
     }
     names.extend(decisions::figure_names(scenario.requirements()));
     names.extend(drivers::figure_names(scenario.drivers(), scenario.model_names()));
@@ -47,7 +60,8 @@ pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, runs: &[Seen]) ->
         Some(_) => format!("{what} ({number})"),
         None => what.to_owned(),
     };
-    let pairs = scenario.comparisons().par_iter().flat_map(|comparison| {
+    let names = pairs(scenario);
+    let pairs = scenario.comparisons().par_iter().zip(&names).flat_map(|(comparison, pair)| {
         let (physical, naive) = (&runs[comparison.physical], &runs[comparison.naive]);
         let title = |what: &str| format!("{what}: {} and {}", physical.model(), naive.model());
         let grid = |name: &str, what: &str, quantities: &[Option<Quantity>], columns: usize| {
@@ -61,7 +75,7 @@ pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, runs: &[Seen]) ->
             };
             let panels: Vec<Option<Panel<'_>>> = quantities.iter().map(panel).collect();
             Figure {
-                name: of_pair(name, physical.model(), naive.model()),
+                name: of_pair(name, pair),
                 caption: format!("{}. {}", comparison.title, title(what)),
                 picture: Picture::Histograms(HistogramGrid::new(&title(what), &panels, columns)),
             }
@@ -163,6 +177,51 @@ mod tests {
     use super::*;
     use crate::{Options, Study};
     use gyradius_report::file_of;
+
+    /// Whatever the models are called, the figures of a study have different names, also where `A` is `a`; and the study is finished.
+    #[test]
+    fn figures_have_names_of_their_own() {
+        let paper = Scenario::peck_2003().unwrap().to_toml();
+        let paper = &paper[..paper.find("[[models]]").unwrap()];
+        // Of few pieces, so that names are often the same when they are put together.
+        let pieces =
+            ["a", "A-vs-b", "c", "b-vs-c", "b", "c-2", "vs-c", "c-vs-a", "a-vs-c", "b-vs-c-2"];
+        let text = |from: usize, by: usize| {
+            let names: Vec<&str> = (0..5).map(|i| pieces[(from + by * i) % pieces.len()]).collect();
+            let mut text = format!("{paper}[[models]]\nname = \"own\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n");
+            for name in &names {
+                text += &format!(
+                    "[[models]]\nname = {name:?}\nlaw = \"wishart\"\nmatched_to = \"own\"\n"
+                );
+            }
+            for (i, physical) in names.iter().enumerate() {
+                for (j, naive) in names.iter().enumerate().filter(|(j, _)| *j != i) {
+                    text += &format!(
+                        "[[comparisons]]\ntitle = \"{i} {j}\"\nphysical = {physical:?}\nnaive = {naive:?}\n"
+                    );
+                }
+            }
+            text
+        };
+        let (mut checked, mut numbered) = (0, 0);
+        for from in 0..pieces.len() {
+            for by in [1, 3, 7, 9] {
+                let Ok(scenario) = Scenario::from_toml(&text(from, by)) else { continue };
+                let all = names(&scenario);
+                let different: BTreeSet<String> =
+                    all.iter().map(|name| name.to_lowercase()).collect();
+                assert_eq!(different.len(), all.len(), "{all:?}");
+                checked += 1;
+                let plain = |c: &Comparison| {
+                    let models: Vec<&str> = scenario.model_names().collect();
+                    format!("{}-vs-{}", models[c.physical], models[c.naive])
+                };
+                let plain: Vec<String> = scenario.comparisons().iter().map(plain).collect();
+                numbered += usize::from(plain != pairs(&scenario));
+            }
+        }
+        assert!(checked > 10 && numbered > 3, "{checked} {numbered}");
+    }
 
     /// Scenarios with figures of every kind: each file of a figure is announced before the runs, and a file of
     /// the user's in its place is found then, in every place, and left alone.

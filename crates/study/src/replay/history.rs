@@ -1,17 +1,15 @@
 //! The motion of a run, sampled, and as a table.
 
-use gyradius_report::round_below;
 use gyradius_separation::{AnyLoad, LoadId, LoadState, MovingBody, Outcome, Snapshot, Step};
 use nalgebra::{Unit, Vector3};
 use std::{borrow::Cow, iter};
 
+use super::grid::{Grid, Part};
 use crate::csv;
 
-/// Rows on the even grid at most, and numbers in all of them.
+/// Rows on an even grid at most, about, and numbers in all of them.
 const MOST: f64 = 20_000.0;
 const NUMBERS: f64 = 1e6;
-/// Rows to the last release, about.
-const PUSHING: f64 = 100.0;
 
 /// A moment of a run.
 #[derive(Clone, Debug)]
@@ -21,10 +19,12 @@ pub(crate) struct Moment {
     pub(crate) event: String,
 }
 
-/// The motion on an even grid in time and at every event.
+/// The motion on grids that are even in time, one to the last release and one from there on, and at every event.
 #[derive(Clone, Debug)]
 pub(crate) struct History {
     pub(crate) moments: Vec<Moment>,
+    /// The same at scattered times; empty where the grids are fine enough for figures.
+    scattered: Vec<Moment>,
     /// Which load let go and when, s, in the order of time.
     pub(crate) releases: Vec<(LoadId, f64)>,
     /// Which loads there are.
@@ -51,15 +51,19 @@ impl History {
         }
         let last = releases.last().map_or(end, |(_, time)| *time);
         let most = MOST.min(NUMBERS / columns(&ids).len() as f64);
-        let interval = round_below(f64::max(last / PUSHING, end / most));
-        let mut moments: Vec<Moment> = Vec::new();
-        let mut next = 0_u32;
+        let parts = [(0.0, last), (last, end)].map(|part| Part::new(part, steps, last, most));
+        let is_coarse = parts.iter().any(|part| part.is_coarse);
+        let (mut moments, mut scattered) = (Vec::<Moment>::new(), Vec::<Moment>::new());
+        let [mut even, mut uneven] =
+            [false, true].map(|is_scattered| parts.map(|part| Grid::new(part, is_scattered)));
         for step in steps {
-            let mut due: Vec<(f64, String)> = Vec::new();
-            // A grid of multiples, not of sums.
-            while f64::from(next) * interval < step.end_s() {
-                due.push((f64::from(next) * interval, String::new()));
-                next += 1;
+            let part = usize::from(step.start_s() >= last);
+            let mut due: Vec<(f64, String)> =
+                even[part].before(step.end_s()).map(|time| (time, String::new())).collect();
+            if is_coarse {
+                let times = uneven[part].before(step.end_s());
+                scattered
+                    .extend(times.map(|time| Moment { now: step.at(time), event: String::new() }));
             }
             for (place, (id, load)) in loads.iter().enumerate() {
                 let start = load.start_s().unwrap_or(0.0);
@@ -93,16 +97,26 @@ impl History {
             });
             moments.extend(due.into_iter().map(|(t, event)| Moment { now: step.at(t), event }));
         }
+        if is_coarse {
+            scattered.extend(moments.last().cloned());
+        }
         if let Some(first) = moments.first_mut() {
             first.event.insert_str(0, "clamp opens");
         }
         Self {
             moments,
+            scattered,
             releases,
             loads: ids,
             free: outcome.map(Outcome::release_time),
             rounding: outcome.map_or(0.0, Outcome::momentum_rounding),
         }
+    }
+
+    /// Moments for figures: at scattered times where those of the table could keep step with a body that turns, and
+    /// show nothing of it.
+    pub(crate) fn for_figures(&self) -> &[Moment] {
+        if self.scattered.is_empty() { &self.moments } else { &self.scattered }
     }
 
     /// When it ends, s.
@@ -244,5 +258,39 @@ mod tests {
         assert_eq!(animation.matches("\"from\":null").count(), 1);
         assert_eq!(animation.matches("\"from\":0.02,").count(), 1);
         assert_eq!(animation.matches("\"from\":0.0,").count(), 2);
+    }
+
+    /// However long the coast, there are as many rows before the last release, and rows enough after it to follow the bodies
+    /// as they turn, or as many as there may be.
+    #[test]
+    fn a_long_coast_takes_no_rows_from_the_springs() {
+        let text = Scenario::peck_2003().unwrap().to_toml();
+        for (spin, coasts) in [(0.0, &[0.0, 3600.0][..]), (10.0_f64, &[20.0, 1000.0])] {
+            let still = "angular_velocity_rad_per_s = [0.0, 0.0, 0.0]";
+            let turning = format!("angular_velocity_rad_per_s = [{spin:?}, 0.5, 0.0]");
+            let scenario = Scenario::from_toml(&text.replace(still, &turning)).unwrap();
+            for coast in coasts {
+                let replay = Replay::new(&scenario, None, 0, *coast).unwrap();
+                let history = &replay.history;
+                let release = history.pushing_s();
+                let times: Vec<f64> = history.moments.iter().map(|m| m.now.time_s()).collect();
+                assert!(times.windows(2).all(|pair| pair[0] < pair[1]));
+                let pushing = times.iter().filter(|time| **time <= release).count();
+                assert!((100..300).contains(&pushing), "{coast}: {pushing}");
+                let after: Vec<f64> = times.into_iter().filter(|time| *time >= release).collect();
+                let longest = after.windows(2).map(|p| p[1] - p[0]).fold(0.0, f64::max);
+                assert!(after.len() < 60_000, "{}", after.len());
+                assert!(after.len() > 16_000 || longest <= release / 100.0, "{longest}");
+                // Where rows could keep step with a body that turns, figures have moments aside of them.
+                let is_coarse = longest * spin > super::super::grid::TURN;
+                assert_eq!(history.scattered.is_empty(), !is_coarse, "{longest}");
+                let gaps: Vec<f64> = history
+                    .scattered
+                    .windows(2)
+                    .map(|p| p[1].now.time_s() - p[0].now.time_s())
+                    .collect();
+                assert!(gaps.iter().all(|gap| *gap > 0.0 && *gap < 2.0 * longest));
+            }
+        }
     }
 }

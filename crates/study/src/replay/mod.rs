@@ -1,6 +1,8 @@
 //! One run of a study again, bit for bit, with all that happens in it.
 
 mod error;
+mod film;
+mod grid;
 mod held;
 mod history;
 mod outlines;
@@ -27,6 +29,7 @@ use crate::{
 };
 use error::MOST_COAST;
 pub use error::ReplayError;
+use film::Film;
 pub(crate) use held::Held;
 use history::History;
 
@@ -79,6 +82,7 @@ pub struct Replay {
     /// The table of this run alone.
     own: Table,
     history: History,
+    film: Film,
     /// How near the bodies come, if that is watched and the run ends well.
     clearance: Option<Clearance>,
     /// The table whose row it was held against.
@@ -160,6 +164,14 @@ impl Replay {
         let loads: Vec<_> = case.separation.iter().flat_map(Separation::loads).collect();
         let ended = result.as_ref().and_then(|result| result.as_ref().ok());
         let history = History::new(&steps, &loads, ended);
+        let events = history.moments.iter().filter(|moment| !moment.event.is_empty());
+        let film = case.separation.as_ref().map_or_else(
+            |_| Film::default(),
+            |separation| {
+                let events = events.map(|moment| moment.now.time_s());
+                Film::new(separation, &steps, history.pushing_s(), events)
+            },
+        );
         let simulation = Separations::new(scenario, &model);
         let mut own = Table::new(&spec.name, run, simulation.columns())?;
         let run = case.ended(scenario, result);
@@ -168,6 +180,7 @@ impl Replay {
         Ok(Self {
             own,
             history,
+            film,
             scenario: scenario.clone(),
             model: spec.name.clone(),
             case,

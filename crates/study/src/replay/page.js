@@ -22,7 +22,7 @@ const turn = (q, v) => {
 
 // What may be missing.
 const between = (k, a, b, share) => (a[k] === null || b[k] === null ? null : a[k] + (b[k] - a[k]) * share);
-// The frame at a time: between two, straight but for attitudes brought back to unit norm.
+// The frame at a time: between two, straight but for attitudes, which turn.
 function at(time) {
   let i = 0, j = frames.length - 1;
   while (j - i > 1) { const k = (i + j) >> 1; if (frames[k][0] <= time) i = k; else j = k; }
@@ -33,10 +33,13 @@ function at(time) {
     for (let k = from; k < to; k++) out.push(a[k] + (b[k] - a[k]) * share);
     return out;
   };
+  // At an even rate, about one axis.
   const attitude = (k) => {
     const p = a.slice(k, k + 4), q = b.slice(k, k + 4);
-    const sign = p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3] < 0 ? -1 : 1;
-    const m = p.map((x, n) => x + (sign * q[n] - x) * share), size = Math.hypot(...m);
+    const cosine = p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3], sign = cosine < 0 ? -1 : 1;
+    const angle = Math.acos(Math.min(1, Math.abs(cosine))), sine = Math.sin(angle);
+    const [of, to] = sine > 1e-4 ? [Math.sin((1 - share) * angle) / sine, Math.sin(share * angle) / sine] : [1 - share, share];
+    const m = p.map((x, n) => x * of + sign * q[n] * to), size = Math.hypot(...m);
     return m.map((x) => x / size);
   };
   return {
@@ -72,7 +75,8 @@ function shadow(points) {
   };
   return half(sorted).concat(half(sorted.reverse()));
 }
-const most = Math.max(...frames.map((f) => norm(f.slice(21, 24)))) || 1;
+const largest = (values) => values.reduce((a, b) => Math.max(a, b), -Infinity), least = (values) => values.reduce((a, b) => Math.min(a, b), Infinity);
+const most = largest(frames.map((f) => norm(f.slice(21, 24)))) || 1;
 const VIEW = [0.9, 0.32, 1];
 let [yaw, pitch, zoom] = VIEW, time = 0, playing = true, before = null;
 // The first half of the slider and of the charts are the springs, where they are over soon.
@@ -289,8 +293,23 @@ function draw() {
 
 // Charts beside the scene, over the same time as the slider.
 const SVG = Object.assign(document.createElement("template"), { innerHTML: "<svg></svg>" }).content.firstChild.namespaceURI;
-const PLOT = [300, 64], LEFT = 58, TOP = 22, cursors = [];
-function chart(label, colour, lines) {
+const PLOT = [300, 64], TOP = 22, cursors = [];
+// What has room to its left for the widest label of an axis; the same for all charts, for they share the time.
+const rule = document.createElement("canvas").getContext("2d");
+rule.font = "11px system-ui, sans-serif";
+const words = (y) => (y === 0 ? "0" : Math.abs(y) >= 1e-3 && Math.abs(y) < 1e5 ? `${+y.toPrecision(4)}` : y.toExponential(2)).replace(/-/g, "−");
+const bounds = (values) => {
+  const low = least(values), high = largest(values);
+  if (high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high))) return [low, high];
+  const pad = Math.abs(high) || 1;
+  return [low - 0.05 * pad, high + 0.05 * pad];
+};
+const charts = [];
+const chart = (label, colour, lines) => {
+  const values = lines.flatMap(([, of]) => frames.map(of)).filter((y) => y !== null);
+  if (values.length) charts.push({ label, colour, lines, seen: [least(values), largest(values)], bounds: bounds(values) });
+};
+function show({ label, colour, lines, seen, bounds: [low, high] }, LEFT) {
   const make = (name, within, attributes, text) => {
     const made = document.createElementNS(SVG, name);
     Object.entries(attributes).forEach(([key, value]) => made.setAttribute(key, value));
@@ -298,15 +317,10 @@ function chart(label, colour, lines) {
     within.append(made);
     return made;
   };
-  const values = lines.flatMap(([, of]) => frames.map(of)).filter((y) => y !== null);
-  if (!values.length) return;
-  let low = Math.min(...values), high = Math.max(...values);
-  const words = (y) => (y === 0 ? "0" : Math.abs(y) >= 1e-3 && Math.abs(y) < 1e5 ? `${+y.toPrecision(4)}` : y.toExponential(2)).replace(/-/g, "−");
   const [wide, tall] = [LEFT + PLOT[0] + 10, TOP + PLOT[1] + 22];
   const svg = make("svg", el("charts"), { viewBox: `0 0 ${wide} ${tall}`, role: "img", "font-size": 11, "font-family": "system-ui, sans-serif", fill: "none" });
   make("title", svg, {}, label);
-  make("desc", svg, {}, `From ${words(low)} to ${words(high)} over ${shown(end)} seconds.`);
-  if (!(high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high)))) { const pad = Math.abs(high) || 1; low -= 0.05 * pad; high += 0.05 * pad; }
+  make("desc", svg, {}, `From ${words(seen[0])} to ${words(seen[1])} over ${shown(end)} seconds.`);
   const y = (value) => PLOT[1] * (1 - (value - low) / (high - low));
   make("text", svg, { x: LEFT, y: 13, fill: colour, "font-weight": 600 }, label);
   lines.length > 1 && lines.forEach(([, , , ink], k) => make("text", svg, { x: wide - 10 - 16 * (lines.length - 1 - k), y: 13, fill: ink, "font-weight": 600, "text-anchor": "end" }, k + 1));
@@ -318,12 +332,20 @@ function chart(label, colour, lines) {
   ticks.forEach((t, k) => make("text", svg, { x: LEFT + share(t) * PLOT[0], y: tall - 7, fill: MUTED, "text-anchor": ["start", "middle", "end"][k === ticks.length - 1 ? 2 : k] }, `${+t.toPrecision(3)} s`));
   data.releases.forEach(([, t]) => make("path", plot, { d: `M${share(t) * PLOT[0]} 0v${PLOT[1]}`, stroke: IDLE, "stroke-width": 0.7, "stroke-dasharray": "3 3" }));
   lines.forEach(([, of, ink]) => {
-    let d = "", on = false;
+    // In each half pixel the first, the last, the lowest and the highest: what swings faster is as wide as it swings.
+    let d = "", on = false, column = [];
+    const flush = () => {
+      const heights = column.map((p) => p[1]), ends = [heights.indexOf(least(heights)), heights.indexOf(largest(heights))];
+      const kept = new Set([0, ...ends.sort((p, q) => p - q), column.length - 1]);
+      if (column.length) kept.forEach((k) => { d += `${on ? "L" : "M"}${column[k][0].toFixed(1)} ${column[k][1].toFixed(1)}`; on = true; });
+      column = [];
+    };
     frames.forEach((frame) => {
-      const value = of(frame);
-      if (value !== null) d += `${on ? "L" : "M"}${(share(frame[0]) * PLOT[0]).toFixed(1)} ${y(value).toFixed(1)}`;
-      on = value !== null;
+      const value = of(frame), x = share(frame[0]) * PLOT[0];
+      if (column.length && (value === null || x - column[0][0] > 0.5)) flush();
+      if (value === null) on = false; else column.push([x, y(value)]);
     });
+    flush();
     make("path", plot, { d, stroke: ink, "stroke-width": 1.5 });
   });
   cursors.push(make("path", plot, { d: `M0 0v${PLOT[1]}`, stroke: INK, "stroke-width": 1.2 }));
@@ -334,26 +356,45 @@ chart("distance of the outlines (m)", INK, [["", (f) => f[25], INK]]);
 rates("payload rates (deg/s)", "#0072b2", 8);
 rates("stage rates (deg/s)", "#b34f00", 18);
 chart("nutation of the payload (deg)", "#0072b2", [["", (f) => f[24], body[0]]]);
+const room = Math.ceil(largest(charts.flatMap((of) => of.bounds.map((y) => rule.measureText(words(y)).width)))) + 12;
+charts.forEach((of) => show(of, Math.max(58, room)));
 
 // What happens, marked on the slider: buttons that go there; what is near another shares its mark.
 const events = [
-  ...data.springs.filter((spring) => spring.late).map((spring) => [spring.from, `${spring.name} starts`, `${spring.label} starts`]),
+  ...data.springs.filter((spring) => spring.late && spring.from <= end).map((spring) => [spring.from, `${spring.name} starts`, `${spring.label} starts`]),
   ...data.releases.map(([name, t, label]) => [t, name, `${label} lets go`]),
 ].sort((a, b) => a[0] - b[0]);
-const marks = [];
-events.forEach(([t, name, text]) => {
-  const mark = marks[marks.length - 1];
-  if (mark && share(t) - share(mark.t) < 0.035) { mark.names.push(name); mark.texts.push(text); } else marks.push({ t, names: [name], texts: [text] });
-});
-marks.forEach(({ t, names, texts }) => {
-  const button = document.createElement("button");
-  button.type = "button"; button.style.left = `${100 * share(t)}%`;
-  button.textContent = names.length > 3 ? `${names[0]} … ${names[names.length - 1]}` : names.join(" ");
-  button.title = `${texts.join(", ")}: ${t} s`;
-  button.ariaLabel = `${button.textContent}: ${button.title}`;
-  button.onclick = () => go(t);
-  el("marks").append(button);
-});
+// Marks that would lie on each other are one: how wide they are is known once they stand there.
+function mark() {
+  const place = el("marks"), width = place.clientWidth;
+  const button = ({ t, to, names, texts }) => {
+    const made = document.createElement("button");
+    made.type = "button"; made.style.left = `${50 * (share(t) + share(to))}%`;
+    made.textContent = names.length > 3 ? `${names[0]} … ${names[names.length - 1]}` : names.join(" ");
+    made.title = `${texts.join(", ")}: ${t === to ? t : `${t} to ${to}`} s`;
+    made.ariaLabel = `${made.textContent}: ${made.title}`;
+    made.onclick = () => go(t);
+    place.append(made);
+    return made;
+  };
+  const half = (made) => made.offsetWidth / 2, centre = ({ t, to }) => (share(t) + share(to)) / 2 * width;
+  const marks = [];
+  place.replaceChildren();
+  events.forEach(([t, name, text]) => {
+    let last = { t, to: t, names: [name], texts: [text] };
+    last.made = button(last);
+    while (marks.length) {
+      const before = marks[marks.length - 1];
+      if (centre(last) - half(last.made) >= centre(before) + half(before.made) + 2) break;
+      marks.pop(); before.made.remove(); last.made.remove();
+      last = { t: before.t, to: last.to, names: inOrder(before.names.concat(last.names)), texts: before.texts.concat(last.texts) };
+      last.made = button(last);
+    }
+    marks.push(last);
+  });
+}
+const inOrder = (names) => names.sort((a, b) => a.localeCompare(b, "en", { numeric: true }));
+mark();
 function go(t) { time = Math.max(0, Math.min(end, t)); play(false); draw(); }
 const step = (by) => go(timeAt(Math.max(0, Math.min(1, share(time) + by / 200))));
 // A hair beyond, for times are rounded.
@@ -366,7 +407,9 @@ function reset() { [yaw, pitch, zoom] = VIEW; go(0); }
 
 // Springs in eight seconds at first, the coast a tenth as slow as needed.
 const speeds = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
-const wanted = Math.min(end / 10, Math.max(last / 2, end / 60));
+// And no body faster than the eye follows, twenty degrees in a sixtieth of a second.
+const fastest = largest(frames.map((f) => Math.max(norm(f.slice(8, 11)), norm(f.slice(18, 21)))));
+const wanted = Math.min(end / 10, Math.max(last / 2, end / 60), fastest > 0 ? 1200 / fastest : end);
 let speed = speeds.reduce((a, b) => (Math.abs(Math.log(b / wanted)) < Math.abs(Math.log(a / wanted)) ? b : a));
 speeds.forEach((s) => el("speed").append(new Option(`× ${s}`, s, false, s === speed)));
 el("speed").onchange = () => { speed = +el("speed").value; };
@@ -384,7 +427,7 @@ document.onkeydown = (event) => {
   if (event.ctrlKey || event.altKey || event.metaKey || on === "SELECT") return;
   const keys = {
     ",": () => step(-1), ".": () => step(1), "[": () => jump(-1), "]": () => jump(1), r: reset, "+": () => scaled(1.2), "-": () => scaled(1 / 1.2),
-    ...(on === "BUTTON" || on === "INPUT" ? {} : { " ": () => el("play").click() }),
+    ...(on === "BUTTON" || event.target === boxes ? {} : { " ": () => el("play").click() }),
     ...(event.target === canvas ? { ArrowLeft: () => { yaw += 0.1; }, ArrowRight: () => { yaw -= 0.1; }, ArrowUp: () => tilt(0.1), ArrowDown: () => tilt(-0.1) } : {}),
   };
   if (!Object.hasOwn(keys, event.key)) return;
@@ -407,7 +450,7 @@ canvas.onpointermove = (event) => {
 };
 canvas.onpointerup = canvas.onpointercancel = (event) => held.delete(event.pointerId);
 canvas.addEventListener("wheel", (event) => { event.preventDefault(); scaled(Math.exp(-event.deltaY * 0.0015)); draw(); }, { passive: false });
-window.onresize = draw;
+window.onresize = () => { mark(); draw(); };
 // A page opened at #t=0.2 stands still there.
 const start = /^#t=([0-9.]+)$/.exec(location.hash);
 if (start) { time = Math.min(end, +start[1] || 0); play(false); }

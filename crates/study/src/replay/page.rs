@@ -1,22 +1,20 @@
 //! The animation of a run: one page of HTML that needs nothing but itself.
 
 use gyradius_clearance::{Clearance, Outline};
-use gyradius_report::page;
+use gyradius_report::{page, significant};
 use gyradius_separation::{MovingBody, Separation};
 use maud::{PreEscaped, html};
 use serde_json::{Value, json};
 
 use super::{
     Replay,
-    history::Moment,
+    film::{self, Frame},
     outlines::{self, short},
 };
 use crate::{column::REALIZABLE, drawn, loads::Short, scenario::distance_m, solid::uniform_box};
 
 const SCRIPT: &str = include_str!("page.js");
 const STYLE: &str = include_str!("page.css");
-/// Moments shown: enough to be smooth, few enough for a small file.
-const FRAMES: usize = 260;
 /// Loads drawn at most.
 const LOADS: usize = 200;
 
@@ -42,6 +40,13 @@ pub(crate) fn html(replay: &Replay) -> String {
             }
         }
         @if replay.row().failure().is_some() { p.warning { (replay.row().status()) } }
+        @if let Some(cut) = replay.film.cut_s() {
+            p.warning {
+                "The animation ends at " (significant(cut, 4)) " s, and the run at " (significant(replay.history.end_s(), 4)) " s: it has \
+                 room for " (film::MOST) " moments, from one of which to the next neither body may turn by more than about 20°. "
+                code { "history.csv" } " and " code { "history.svg" } " have the whole run."
+            }
+        }
         div.view {
             div.scene { canvas #scene tabindex="0" role="img" aria-label="Payload, stage and springs in three dimensions" {} }
             div #charts {}
@@ -90,8 +95,9 @@ fn data(replay: &Replay) -> Value {
     let centres = drawn::mass_centres(replay.scenario.dispersions(), &replay.case.drawn);
     let outlines = replay.scenario.outlines();
     let shapes = outlines.and_then(|outlines| outlines.about(&centres).ok());
-    let shown = frames(replay);
-    let frames: Vec<Value> = shown.iter().map(|m| frame(replay, m, shapes.as_ref())).collect();
+    let shown = replay.film.frames();
+    let frames: Vec<Value> = shown.iter().map(|f| frame(replay, f, shapes.as_ref())).collect();
+    let end = shown.last().map_or(0.0, |frame| frame.time_s);
     let separation = replay.case.separation.as_ref().ok();
     let loads: Vec<Value> = separation
         .iter()
@@ -134,37 +140,21 @@ fn data(replay: &Replay) -> Value {
         "springs": loads,
         "boxes": bodies.map_or_else(Vec::new, Vec::from),
         "spin": short(replay.scenario.spin_axis().as_slice()),
-        "releases": history.releases.iter().take(LOADS).map(|(load, time)| {
+        "releases": history.releases.iter().filter(|(_, time)| *time <= end).take(LOADS).map(|(load, time)| {
             json!([Short(*load).to_string(), short(&[*time])[0], load.to_string()])
         }).collect::<Vec<_>>(),
     })
 }
 
-/// Moments to be shown: half of them while loads push.
-fn frames(replay: &Replay) -> Vec<&Moment> {
-    let moments = &replay.history.moments;
-    let until = 1.2 * replay.history.pushing_s();
-    let pushing = moments.partition_point(|m| m.now.time_s() <= until);
-    let thin = |from: usize, to: usize| {
-        let count = (to - from).min(FRAMES / 2);
-        (0..count).map(move |i| from + i * (to - from) / count)
-    };
-    let mut chosen: Vec<usize> = thin(0, pushing).chain(thin(pushing, moments.len())).collect();
-    chosen.extend(moments.len().checked_sub(1));
-    chosen.dedup();
-    chosen.into_iter().map(|i| &moments[i]).collect()
-}
-
 /// Time, then of payload and stage position, attitude and rates (deg/s), then the payload's angular
 /// momentum (inertial axes), nutation (deg) and the distance of the outlines (m), null where there is none.
-fn frame(replay: &Replay, moment: &Moment, outlines: Option<&[Outline; 2]>) -> Value {
-    let now = &moment.now;
-    let (payload, stage) = (now.payload(), now.stage());
+fn frame(replay: &Replay, now: &Frame, outlines: Option<&[Outline; 2]>) -> Value {
+    let Frame { time_s, payload, stage } = now;
     let (mp, ml) = (payload.body().mass_kg(), stage.body().mass_kg());
     let (p, l) = (payload.state().position, stage.state().position);
     // From the common mass centre.
     let positions = [(p - l) * (ml / (mp + ml)), (l - p) * (mp / (mp + ml))];
-    let mut values = vec![now.time_s()];
+    let mut values = vec![*time_s];
     for (body, position) in [payload, stage].into_iter().zip(positions) {
         let state = body.state();
         values.extend(position.iter().chain(state.attitude.coords.iter()));

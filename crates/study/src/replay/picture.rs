@@ -29,7 +29,11 @@ pub(super) fn svg(replay: &Replay) -> String {
     let curve = |name: String, hue: Hue, of: &dyn Fn(&Moment) -> Option<f64>| Curve {
         name,
         hue,
-        points: history.moments.iter().filter_map(|m| Some((m.now.time_s(), of(m)?))).collect(),
+        points: history
+            .for_figures()
+            .iter()
+            .filter_map(|m| Some((m.now.time_s(), of(m)?)))
+            .collect(),
     };
     let rates = |stage: bool| -> Vec<Curve> {
         let rate = move |m: &Moment, i: usize| {
