@@ -132,12 +132,13 @@
       const button = buttons.at(-1), heading = button.closest("th"), row = (one) => one.cells[one.cells.length - 1].textContent.trim();
       const bodies = [...table.tBodies].map((body) => [...body.rows].filter((one) => !one.matches(".group")));
       const order = () => [...table.tBodies].map((body) => [...body.rows].filter((one) => !one.matches(".group")));
-      const plain = (text) => /^-?\d+(\.\d+)?$/.test(text);
+      const plain = (text) => /^−?\d+(\.\d+)?(e-?\d+)?$|^below 10⁻⁶$/.test(text);
+      const value = (text) => (text.startsWith("below") ? 1e-6 : Number(text.replace("−", "-")));
       for (const [sense, sign] of [["ascending", 1], ["descending", -1]]) {
         button.click();
         if (heading.getAttribute("aria-sort") !== sense) say(`${name(table)} is not ${sense}`);
         for (const rows of order()) {
-          const numbers = rows.map(row).filter(plain).map(Number);
+          const numbers = rows.map(row).filter(plain).map(value);
           if (numbers.some((x, i) => i > 0 && sign * (x - numbers[i - 1]) < 0)) say(`${name(table)} is not ${sense}: ${numbers}`);
         }
       }
@@ -191,6 +192,13 @@
     is("one finger turns", picture() !== still);
     el("reset").click(); mark.click(); is("reset turns back", picture() === still);
     if (el("boxes")) { el("boxes").click(); is("boxes", picture() !== still); el("boxes").click(); }
+    const places = [...el("marks").children].map((button) => button.getBoundingClientRect());
+    is("marks lie apart", places.every((place, i) => i === 0 || places[i - 1].right <= place.left));
+    const stands = el("play").textContent;
+    el("time").dispatchEvent(new KeyboardEvent("keydown", { key: " ", bubbles: true }));
+    is("space plays from the slider too", el("play").textContent !== stands);
+    el("play").click(); is("and stops", el("play").textContent === stands);
+    document.querySelectorAll("#charts svg text").forEach((text) => is(`label ${text.textContent} cut off`, text.getBBox().x >= 0));
     // In charts and table the same as on the clock.
     const cursor = document.querySelector("#charts g path:last-child").getAttribute("transform");
     is("charts follow", /translate\((?!0 )/.test(cursor) && document.querySelectorAll("#charts svg").length >= 4);

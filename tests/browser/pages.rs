@@ -45,6 +45,47 @@ probability = 0.9
 confidence = 0.9
 "#;
 
+/// Springs that hardly turn the bodies: labels of small numbers are long.
+const BALANCED: &str = r#"
+name = "balanced"
+runs = 2
+
+[payload]
+mass_kg = 500.0
+inertia_kg_m2 = [[120.0, 2.0, 0.0], [2.0, 110.0, 1.0], [0.0, 1.0, 90.0]]
+position_m = [0.0, 0.0, 1.0]
+
+[payload.dispersion]
+root_second_moment_variance_kg_m2 = [0.0, 0.0, 0.0]
+axes = "fixed"
+
+[stage]
+mass_kg = 2000.0
+inertia_kg_m2 = [[3000.0, 0.0, 0.0], [0.0, 3000.0, 0.0], [0.0, 0.0, 900.0]]
+position_m = [0.0, 0.0, -1.0]
+
+[stage.dispersion]
+root_second_moment_variance_kg_m2 = [0.0, 0.0, 0.0]
+axes = "fixed"
+
+[[springs]]
+stiffness_n_per_m = 20000.0000001
+stroke_m = 0.1
+payload_point_m = [0.5, 0.5, -0.9]
+stage_point_m = [0.5, 0.5, 0.9]
+
+[[springs]]
+stiffness_n_per_m = 20000.0
+stroke_m = 0.1
+payload_point_m = [-0.5, -0.5, -0.9]
+stage_point_m = [-0.5, -0.5, 0.9]
+
+[[models]]
+name = "own"
+law = "principal"
+axes = "whole-sphere"
+"#;
+
 /// Every page, by its name.
 pub(super) fn all() -> Vec<(&'static str, String)> {
     let scratch = tempfile::tempdir().unwrap();
@@ -53,6 +94,7 @@ pub(super) fn all() -> Vec<(&'static str, String)> {
     let many = Scenario::from_toml(&format!("{}{}", paper.to_toml(), many_models())).unwrap();
     // Titles that are markup.
     let full = full(&paper).replace("title = \"", "title = \"<b>&\\\"</i> ");
+    let balanced = Scenario::from_toml(BALANCED).unwrap();
     let full = Scenario::from_toml(&full).unwrap();
     vec![
         ("report", report(&paper, 200, &folder.join("paper"))),
@@ -61,6 +103,7 @@ pub(super) fn all() -> Vec<(&'static str, String)> {
         ("report of a simulator", simulator(folder)),
         ("comparison", comparison(folder)),
         ("replay", replay(&paper, 7, &folder.join("replay"))),
+        ("replay of hardly any rates", replay(&balanced, 0, &folder.join("balanced"))),
         ("replay with outlines", replay(&full, 2, &folder.join("outlines"))),
     ]
 }

@@ -9,7 +9,7 @@ use crate::Drawing;
 use crate::axis::Tick;
 use crate::field::{ACROSS, Across, Field, HIGH, band_pen, line_pen, required_pen};
 use crate::lines::{mark_pen, marker};
-use crate::numbers::digits_of;
+use crate::numbers::{digits_of, with_unit};
 use crate::style;
 use crate::svg::{Svg, px};
 use crate::text::{count, significant};
@@ -20,23 +20,24 @@ const PERCENT: [f64; 11] = [1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 0.01, 0.1, 1.0, 5.0, 2
 const MARKED: usize = 10;
 
 /// The distribution of what a requirement is about under models, each with what its runs say. Nothing is computed here but places:
-/// the numbers are those of the judgements.
+/// the numbers are those of the judgements. The unit of the quantity is told where there is one to tell.
 #[must_use]
 pub fn distribution_figure(
     name: &str,
     caption: &str,
     requirement: &Requirement,
+    unit: Option<&str>,
     models: &[(&str, &Judgement)],
 ) -> Drawing {
-    Drawing::new(name, caption, svg(requirement, models))
+    Drawing::new(name, caption, svg(requirement, unit, models))
 }
 
-fn svg(requirement: &Requirement, models: &[(&str, &Judgement)]) -> String {
+fn svg(requirement: &Requirement, unit: Option<&str>, models: &[(&str, &Judgement)]) -> String {
     let title = format!("Distribution: {}", requirement.name());
     let up = Up::new(requirement, models);
     let (across, beyond) = across(requirement.bound(), models);
     let shares = "share of the runs that are at most this (%), on the axis of a normal law";
-    let quantity = requirement.quantity().to_string();
+    let quantity = with_unit(&requirement.quantity().to_string(), unit.unwrap_or("1"));
     let mut field = Field::linear(&across, &up.ticks(), [&quantity, shares]);
     let confidence = stated_in_percent(requirement.confidence().level());
     let probability = stated_in_percent(requirement.probability());

@@ -47,7 +47,8 @@ impl DrivenOutput {
     #[must_use]
     pub fn ranked(&self) -> Vec<&DrivingGroup> {
         let mut groups: Vec<&DrivingGroup> = self.groups.iter().collect();
-        let share = |group: &DrivingGroup| group.total.map_or(-1.0, |[_, share, _]| share);
+        let unknown = f64::NEG_INFINITY;
+        let share = |group: &DrivingGroup| group.total.map_or(unknown, |[_, share, _]| share);
         groups.sort_by(|a, b| share(b).total_cmp(&share(a)));
         groups
     }
@@ -131,13 +132,28 @@ fn panel(svg: &mut Svg, output: &DrivenOutput, top: f64) -> f64 {
         svg.text(at(tick), base + 15.0, TICK.at(Anchor::Middle), &format!("{tick}"));
     }
     let mut end = base + 20.0;
-    if let Some(next) = rest.first() {
-        let most = next.total.map_or_else(|| "unknown".to_owned(), |[_, share, _]| told(share));
-        let text = format!("{} more groups, of which none has more than {most} in all", rest.len());
+    if let Some(text) = others(rest) {
         svg.text(MARGIN, end + 13.0, TICK, &fit(&text, TICK.size, WIDTH - 2.0 * MARGIN));
         end += 18.0;
     }
     end
+}
+
+/// What is said of groups that are not drawn, those that drive most first.
+fn others(rest: &[&DrivingGroup]) -> Option<String> {
+    let (count, unknown) = (rest.len(), rest.iter().filter(|group| group.total.is_none()).count());
+    let (groups, shares) = if count == 1 { ("group", "share") } else { ("groups", "shares") };
+    let known = rest.first()?.total.map(|[_, share, _]| told(share));
+    Some(match (known, unknown) {
+        (None, _) => format!("{count} more {groups}, of unknown {shares}"),
+        (Some(most), 0) if count == 1 => format!("1 more group, which has {most} in all"),
+        (Some(most), 0) => {
+            format!("{count} more groups, of which none has more than {most} in all")
+        }
+        (Some(most), _) => format!(
+            "{count} more groups, {unknown} of unknown shares and none of the others above {most} in all"
+        ),
+    })
 }
 
 /// A share in two digits after the point, or how small it is, where it is drawn: between 0 and 1.
@@ -207,10 +223,11 @@ mod tests {
             let seen = read(&svg("Drivers", &outputs));
             for output in &outputs {
                 let more = output.groups.len().saturating_sub(MOST);
-                let said = format!("{more} more groups");
+                let said = format!("{more} more group");
+                prop_assert!(!seen.contains("than unknown"), "{}", seen);
                 prop_assert!(more == 0 || seen.contains(&said), "{}", seen);
                 let ranked = output.ranked();
-                let share = |g: &&DrivingGroup| g.total.map_or(-1.0, |t| t[1]);
+                let share = |g: &&DrivingGroup| g.total.map_or(f64::NEG_INFINITY, |t| t[1]);
                 prop_assert!(ranked.is_sorted_by(|a, b| share(a) >= share(b)));
             }
             let sheets: Vec<Sheet> = outputs.iter().map(sheet).collect();

@@ -92,6 +92,15 @@ impl Text {
         self
     }
 
+    /// The same with signs of numbers as they are set: − before what is less than zero. What is typed stays as it is.
+    pub(crate) fn with_signs(mut self) -> Self {
+        for span in self.0.iter_mut().filter(|span| span.style != Style::Code) {
+            span.text = with_signs(&span.text);
+            span.tip = span.tip.take().map(|tip| with_signs(&tip));
+        }
+        self
+    }
+
     pub(crate) fn spans(&self) -> &[Span] {
         &self.0
     }
@@ -103,5 +112,42 @@ impl Text {
     fn and(mut self, style: Style, text: impl Into<String>) -> Self {
         self.0.push(Span { text: text.into(), style, tip: None });
         self
+    }
+}
+
+/// A text with − before numbers that are less than zero: not within words and powers of ten, nor between numbers.
+fn with_signs(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut left = text.chars().peekable();
+    while let Some(c) = left.next() {
+        let begins = out.chars().last().is_none_or(|before| " [(".contains(before));
+        let is_sign = c == '-' && begins && left.peek().is_some_and(char::is_ascii_digit);
+        out.push(if is_sign { '−' } else { c });
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn signs_of_numbers_are_set_and_nothing_else_is() {
+        for (text, set) in [
+            ("-1.632", "−1.632"),
+            ("[-1.2e-7, -3]", "[−1.2e-7, −3]"),
+            ("-0.1 … 2 (-3.1 σ)", "−0.1 … 2 (−3.1 σ)"),
+            ("model-2", "model-2"),
+            ("2003-01-02", "2003-01-02"),
+            ("- 1 –", "- 1 –"),
+            ("-inf of -x", "-inf of -x"),
+        ] {
+            assert_eq!(with_signs(text), set);
+        }
+        let typed = Text::from("-1").tip("-2").code("--run -3").with_signs();
+        assert_eq!(
+            (typed.words().as_str(), typed.spans()[0].tip.as_deref()),
+            ("−1--run -3", Some("−2"))
+        );
     }
 }

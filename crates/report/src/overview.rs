@@ -11,9 +11,11 @@ use crate::{
     share::percent,
 };
 
-/// Panels in a figure at most; further numbers are in the table of the page and in the run tables.
-const PANELS: usize = 24;
-/// The name of the figure.
+/// Panels in a figure at most, five rows: as many as a sheet of paper has room for.
+const PANELS: usize = 15;
+/// Figures of a page at most; further numbers are in the table of the page and in the run tables.
+const FIGURES: usize = 20;
+/// The name of the first figure, behind which others have a number.
 const FIGURE: &str = "quantities";
 
 /// What the runs of a simulation under one or several models amount to: every number that its page shows.
@@ -67,7 +69,7 @@ impl Overview {
             title: title.to_owned(),
             confidence,
             models: tables.iter().map(model).collect::<Result<_, StatisticsError>>()?,
-            figures: figure(tables, &quantities).into_iter().collect(),
+            figures: figures(tables, &quantities),
             quantities,
         })
     }
@@ -103,12 +105,12 @@ impl Overview {
             });
             Some(Panel { label: quantity.label(), series: series.collect(), nominal: None })
         };
-        let panels: Vec<_> = shown(&quantities).map(panel).collect();
+        let panels: Vec<_> = drawn(&quantities).map(panel).collect();
         Ok(Self {
             title: title.to_owned(),
             confidence,
             models: surveys.iter().map(model).collect::<Result<_, StatisticsError>>()?,
-            figures: of_panels(&panels).into_iter().collect(),
+            figures: of_panels(&panels),
             quantities,
         })
     }
@@ -129,10 +131,9 @@ impl Overview {
         self.quantities.iter().map(|q| (q.column.as_str(), q.unit.as_str(), &q.samples[..]))
     }
 
-    /// The figures that such a page may have, by name.
-    #[must_use]
-    pub fn figure_names() -> &'static [&'static str] {
-        &[FIGURE]
+    /// The figures that such a page of so many numbers may have, by name.
+    pub fn figure_names(numbers: usize) -> impl Iterator<Item = String> {
+        (0..numbers.div_ceil(PANELS).min(FIGURES)).map(name)
     }
 
     /// The page, which says which runs failed.
@@ -163,12 +164,25 @@ impl Overview {
         for (i, model) in self.models.iter().enumerate() {
             table = table.numbers(model.name.as_str(), |q| spread(q.samples.get(i)));
         }
+        let others: Vec<&str> =
+            differing(&self.quantities).skip(FIGURES * PANELS).map(|q| q.column.as_str()).collect();
+        let left_out = match others[..] {
+            [] => None,
+            [only] => Some(format!("{only} is in no figure, for there are many quantities.")),
+            [first, .., last] => Some(format!(
+                "The {} quantities from {first} to {last} in this table are in no figure, for there are many.",
+                others.len()
+            )),
+        };
         let results = Section::new("Results")
             .warnings(warnings)
             .paragraph(
                 "Mean ± standard deviation, and the range from the 5th to the 95th percentile.",
             )
-            .table(table)
+            .table(table);
+        let results = left_out
+            .into_iter()
+            .fold(results, Section::paragraph)
             .figures(self.figures.iter().map(Figure::drawn));
         Document::new(&self.title, &self.title, lead).section(results)
     }
@@ -213,19 +227,24 @@ fn quantities(columns: &[Column], samples: impl Fn(&str) -> Vec<SampleSummary>) 
 }
 
 /// Every number whose runs differ.
-fn shown(quantities: &[Quantity]) -> impl Iterator<Item = &Quantity> {
+fn differing(quantities: &[Quantity]) -> impl Iterator<Item = &Quantity> {
     let differ = |quantity: &&Quantity| {
         quantity.samples.iter().any(|sample| sample.minimum < sample.maximum)
     };
-    quantities.iter().filter(differ).take(PANELS)
+    quantities.iter().filter(differ)
 }
 
-fn figure(tables: &[Table], quantities: &[Quantity]) -> Option<Figure> {
-    let values: Vec<Vec<Vec<f64>>> = shown(quantities)
+/// Those that have a panel.
+fn drawn(quantities: &[Quantity]) -> impl Iterator<Item = &Quantity> {
+    differing(quantities).take(FIGURES * PANELS)
+}
+
+fn figures(tables: &[Table], quantities: &[Quantity]) -> Vec<Figure> {
+    let values: Vec<Vec<Vec<f64>>> = drawn(quantities)
         .map(|q| tables.iter().map(|t| t.values(&q.column).unwrap_or_default()).collect())
         .collect();
     let mut panels = Vec::new();
-    for (quantity, values) in shown(quantities).zip(&values) {
+    for (quantity, values) in drawn(quantities).zip(&values) {
         let series = tables.iter().zip(values);
         let series = series.map(|(table, values)| Series::new(table.model(), values, table.len()));
         let (label, series) = (quantity.label(), series.collect());
@@ -234,12 +253,26 @@ fn figure(tables: &[Table], quantities: &[Quantity]) -> Option<Figure> {
     of_panels(&panels)
 }
 
-fn of_panels(panels: &[Option<Panel<'_>>]) -> Option<Figure> {
-    (!panels.is_empty()).then(|| Figure {
-        name: FIGURE.to_owned(),
-        caption: "How the quantities are distributed over the runs".to_owned(),
-        picture: Picture::Histograms(HistogramGrid::new("Quantities", panels, 3)),
-    })
+/// The name of the figure in a place.
+fn name(place: usize) -> String {
+    if place == 0 { FIGURE.to_owned() } else { format!("{FIGURE}-{}", place + 1) }
+}
+
+fn of_panels(panels: &[Option<Panel<'_>>]) -> Vec<Figure> {
+    let all = panels.len().div_ceil(PANELS);
+    let figure = |(place, panels): (usize, &[Option<Panel<'_>>])| {
+        let part = if all > 1 { format!(", {} of {all}", place + 1) } else { String::new() };
+        Figure {
+            name: name(place),
+            caption: format!("How the quantities are distributed over the runs{part}"),
+            picture: Picture::Histograms(HistogramGrid::new(
+                &format!("Quantities{part}"),
+                panels,
+                3,
+            )),
+        }
+    };
+    panels.chunks(PANELS).enumerate().map(figure).collect()
 }
 
 fn failures(model: &Model) -> Option<Text> {
@@ -273,6 +306,58 @@ mod tests {
             1 => Just(None),
             1 => prop::sample::select(vec![f64::NAN, f64::INFINITY, 1e300, -1e300, 0.0]).prop_map(Some),
         ]
+    }
+
+    /// However many numbers there are, each has its panel, or the page says that it has none; figures are as high as a sheet
+    /// of paper at most, and have names that are known before the runs.
+    #[test]
+    fn every_number_has_a_panel_or_is_named() {
+        for numbers in [1, 15, 16, 24, 40, 300, 301, 340] {
+            let column = |i: i32| Column::number(format!("x{i}x"), "m", "A number.");
+            let columns = (0..numbers).map(column).collect();
+            let mut table = Table::new("own", 0, columns).unwrap();
+            for run in 0..3 {
+                table
+                    .push(None, (0..numbers).map(|i| Cell::from(Some(f64::from(run * i)))))
+                    .unwrap();
+            }
+            let overview = Overview::new("", &[table]).unwrap();
+            let names: Vec<String> = Overview::figure_names(numbers as usize).collect();
+            let svgs: Vec<String> = overview.figures.iter().map(Figure::svg).collect();
+            assert!(overview.figures.iter().all(|figure| names.contains(&figure.name)));
+            for svg in &svgs {
+                let side = |name: &str| -> f64 {
+                    svg.split_once(&format!(" {name}=\""))
+                        .unwrap()
+                        .1
+                        .split('"')
+                        .next()
+                        .unwrap()
+                        .parse()
+                        .unwrap()
+                };
+                assert!(
+                    side("height") / side("width") < 1.3,
+                    "{} {}",
+                    side("height"),
+                    side("width")
+                );
+            }
+            let page = overview.document().markdown();
+            let without: Vec<i32> = (1..numbers)
+                .filter(|i| !svgs.iter().any(|svg| svg.contains(&format!("x{i}x"))))
+                .collect();
+            assert_eq!(without.len(), (numbers as usize).saturating_sub(301));
+            let said = match without[..] {
+                [] => !page.contains("in no figure"),
+                [only] => page.contains(&format!("x{only}x is in no figure")),
+                [first, .., last] => page.contains(&format!(
+                    "The {} quantities from x{first}x to x{last}x",
+                    without.len()
+                )),
+            };
+            assert!(said, "{numbers}: {page}");
+        }
     }
 
     proptest! {

@@ -12,6 +12,8 @@
   const number = (text) => {
     const plain = text.trim().replace(/[−‒–](?=[\d.])/g, "-").replace(/(\d)[\u2009\u202f\u00a0](?=\d{3})/g, "$1")
       .replace(/\b\d{1,3}(,\d{3})+\b/g, (all) => all.replaceAll(",", ""));
+    const power = /^below 10([⁻⁰¹²³⁴-⁹]+)$/.exec(plain);
+    if (power) return 10 ** +[...power[1]].map((c) => (c === "⁻" ? "-" : "⁰¹²³⁴⁵⁶⁷⁸⁹".indexOf(c))).join("");
     if (/^(none|all)\b/.test(plain)) return plain.startsWith("all") ? 100 : 0;
     const found = /^[([<>≤≥~ ]*([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|[-+]?inf)/i.exec(plain);
     if (!found) return NaN;

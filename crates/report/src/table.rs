@@ -136,7 +136,8 @@ impl<'a, R> TableOf<'a, R> {
 
     fn column<C: Into<PageCell>>(mut self, column: PageColumn, of: impl FnMut(&'a R) -> C) -> Self {
         for (row, cell) in self.table.rows.iter_mut().zip(self.things.iter().map(of)) {
-            row.cells.push(cell.into());
+            let PageCell(lines) = cell.into();
+            row.cells.push(lines.into_iter().map(Text::with_signs).collect());
         }
         self.table.columns.push(column);
         self

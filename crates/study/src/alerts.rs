@@ -217,22 +217,7 @@ impl Alert {
                     significant(*nominal, 4),
                     significant(*mean, 4)
                 )),
-            Self::HeavyTails { model, outcomes } => {
-                let mut heaviest: Vec<&(String, f64)> = outcomes.iter().collect();
-                heaviest.sort_by(|a, b| b.1.total_cmp(&a.1));
-                let said = heaviest.iter().take(NAMED);
-                let said = said.map(|(label, kurtosis)| format!("{label} ({})", significant(*kurtosis, 3)));
-                let said: Vec<String> = said.collect();
-                let others = match outcomes.len().saturating_sub(NAMED) {
-                    0 => String::new(),
-                    others => format!(" and {others} more"),
-                };
-                Text::default().strong(format!("{model}: heavy tails")).plain(format!(
-                    " in {}{others}: a few runs lie far from all others. In brackets is the kurtosis, 3 for a normal \
-                     distribution; above {HEAVY}, standard deviations are less certain than their intervals say.",
-                    said.join(", ")
-                ))
-            }
+            Self::HeavyTails { model, outcomes } => heavy_tails(&[(model, outcomes)]),
             Self::NearBoundary { model, body, near, drawn, margin } => {
                 let share = significant(100.0 * *near as f64 / *drawn as f64, 3);
                 Text::default()
@@ -252,9 +237,58 @@ impl Alert {
     }
 }
 
+/// Outcomes of a model, by their labels, with their kurtosis.
+type Heavy<'a> = (&'a String, &'a Vec<(String, f64)>);
+
+/// Which outcomes have heavy tails, of all models at once, and what that means.
+fn heavy_tails(models: &[Heavy<'_>]) -> Text {
+    let named = |outcomes: &[(String, f64)]| {
+        let mut heaviest: Vec<&(String, f64)> = outcomes.iter().collect();
+        heaviest.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let said = heaviest.iter().take(NAMED);
+        let said = said.map(|(label, kurtosis)| format!("{label} ({})", significant(*kurtosis, 3)));
+        let said: Vec<String> = said.collect();
+        match outcomes.len().saturating_sub(NAMED) {
+            0 => said.join(", "),
+            others => format!("{} and {others} more", said.join(", ")),
+        }
+    };
+    let text = match models {
+        [(model, outcomes)] => {
+            let text = Text::default().strong(format!("{model}: heavy tails"));
+            text.plain(format!(" in {}", named(outcomes)))
+        }
+        several => {
+            let told =
+                several.iter().map(|(model, outcomes)| format!(" {model} in {}", named(outcomes)));
+            let text = Text::default().strong("Heavy tails").plain(":");
+            text.plain(told.collect::<Vec<_>>().join(";"))
+        }
+    };
+    text.plain(format!(
+        ": a few runs lie far from all others. In brackets is the kurtosis, 3 for a normal distribution; above {HEAVY}, standard \
+         deviations are less certain than their intervals say."
+    ))
+}
+
 /// What a reader should know first, if there is anything.
 pub(crate) fn section(alerts: &[Alert]) -> Option<Section> {
-    let texts = alerts.iter().map(Alert::text);
+    let heavy = |alert: &'_ Alert| matches!(alert, Alert::HeavyTails { .. });
+    let heavies = alerts.iter().filter_map(|alert| {
+        if let Alert::HeavyTails { model, outcomes } = alert {
+            Some((model, outcomes))
+        } else {
+            None
+        }
+    });
+    let mut heavies: Vec<Heavy<'_>> = heavies.collect();
+    // Where the first of them stands, all are told.
+    let text = |alert: &Alert| match (heavy(alert), heavies.is_empty()) {
+        (false, _) => Some(alert.text()),
+        (true, true) => None,
+        (true, false) => Some(heavy_tails(&std::mem::take(&mut heavies))),
+    };
+    let texts: Vec<Text> = alerts.iter().filter_map(text).collect();
     (!alerts.is_empty()).then(|| Section::new("Before you read the results").warnings(texts))
 }
 

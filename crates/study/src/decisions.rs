@@ -173,13 +173,16 @@ pub(crate) fn sections(scenario: &impl Subject, head: &Head) -> Vec<Section> {
         };
         return head.ended.iter().map(of).collect();
     }
+    let of_share = PageCell::from("share of the runs that keep it")
+        .line(Text::default().quiet("interval with the confidence of the requirement"));
+    let unit = |judged: &Judged| unit_of(scenario, judged.judgement.requirement().quantity());
     let table = PageTable::of(&head.requirements)
         .words("requirement", |judged| {
             let requirement = judged.judgement.requirement();
+            let bound = in_unit(requirement.bound().to_string(), &unit(judged));
             let text = format!(
-                "{} {}, in {} of {}, with {} confidence",
+                "{} {bound}, in {} of {}, with {} confidence",
                 requirement.quantity(),
-                requirement.bound(),
                 stated_in_percent(requirement.probability()),
                 requirement.failed_runs().of_which(),
                 stated_in_percent(requirement.confidence().level())
@@ -201,16 +204,18 @@ pub(crate) fn sections(scenario: &impl Subject, head: &Head) -> Vec<Section> {
         })
         .numbers("bound that the share keeps", |judged| {
             let limits = judged.judgement.requirement().bound();
-            judged.judgement.tolerance().map_or_else(|| "–".to_owned(), |own| bound(own, limits))
+            let told = judged.judgement.tolerance().map(|own| bound(own, limits));
+            told.map_or_else(|| "–".to_owned(), |told| in_unit(told, &unit(judged)))
         })
         .numbers("margin", |judged| {
             let judgement = &judged.judgement;
             let Some(margin) = judgement.margin() else { return PageCell::from("–") };
             let deviations = judgement.margin_deviations().map(|d| format!("{} σ", one_decimal(d)));
-            let cell = PageCell::from(Text::from(significant(rounded_down(margin, 4), 4)));
+            let margin = significant(rounded_down(margin, 4), 4);
+            let cell = PageCell::from(Text::from(in_unit(margin, &unit(judged))));
             deviations.into_iter().fold(cell, |cell, d| cell.line(Text::default().quiet(d)))
         })
-        .numbers("share of the runs that keep it", |judged| {
+        .numbers(of_share, |judged| {
             let (share, interval) = (judged.judgement.share(), judged.judgement.share_interval());
             let Some((share, interval)) = share.zip(interval) else { return PageCell::from("–") };
             let required = judged.judgement.requirement().probability();
@@ -266,13 +271,15 @@ pub(crate) fn sections(scenario: &impl Subject, head: &Head) -> Vec<Section> {
     }
     let section = Section::new("Requirements").table(table);
     let section = notes.into_iter().fold(section, Section::paragraph);
-    let folded = [Some(distributions(head)), worst(scenario, head), Some(convergence(head))];
+    let folded =
+        [Some(distributions(scenario, head)), worst(scenario, head), Some(convergence(head))];
     vec![section.sections(folded.into_iter().flatten())]
 }
 
 /// Where runs fail the requirements, and with which inputs outcomes rise and fall.
 pub(crate) fn where_runs_fail(head: &Head) -> Vec<Section> {
-    where_runs_fail::sections(&head.where_runs_fail, head.independent_runs_per_model.is_some())
+    let vehicles = head.independent_runs_per_model.is_some();
+    where_runs_fail::sections(&head.where_runs_fail, vehicles, !head.requirements.is_empty())
 }
 
 /// The figures that requirements may have, by name: known before the runs.
@@ -308,7 +315,7 @@ fn looks(head: &Head) -> Looks {
 }
 
 /// What the quantities of the requirements look like, to the extreme runs.
-fn distributions(head: &Head) -> Section {
+fn distributions(scenario: &impl Subject, head: &Head) -> Section {
     let reading = "Each line goes through order statistics of the runs: the value with the rank k of n runs is drawn at the share \
                    (k − ½)/n, on the axis of a normal law, on which a normal distribution is a straight line. The extreme runs of \
                    both tails are always among the points. The shaded band holds the whole distribution of all runs at once, with \
@@ -317,11 +324,12 @@ fn distributions(head: &Head) -> Section {
                    a distribution function never decreases. The tolerance point is the bound of the table above. A point is a run \
                    as it is: tails are not fitted.";
     let drawings = figures(head, |number, requirement, models| {
-        let caption = format!(
-            "Distribution of {}, to the extreme runs of both tails",
-            requirement.quantity()
-        );
-        distribution_figure(&of_requirement(DISTRIBUTION, number), &caption, requirement, models)
+        let (quantity, name) = (requirement.quantity(), requirement.name());
+        let caption =
+            format!("“{name}”: distribution of {quantity}, to the extreme runs of both tails");
+        let unit = unit_of(scenario, quantity);
+        let file = of_requirement(DISTRIBUTION, number);
+        distribution_figure(&file, &caption, requirement, unit.as_deref(), models)
     });
     let section = Section::new("Distributions").paragraph(reading);
     let section = match looks(head) {
@@ -374,6 +382,7 @@ fn worst(scenario: &impl Subject, head: &Head) -> Option<Section> {
             format!("gyradius replay . --model {model} --run {run}")
         }),
     };
+    let unit = |judged: &Judged| unit_of(scenario, judged.judgement.requirement().quantity());
     let table = PageTable::of(&all)
         .groups(|(judged, ..)| {
             format!("{}, {}", judged.judgement.requirement().name(), judged.model)
@@ -381,10 +390,12 @@ fn worst(scenario: &impl Subject, head: &Head) -> Option<Section> {
         .numbers("run", |(_, run, _)| run.to_string())
         .numbers("value", |(judged, _, beyond)| {
             let limits = judged.judgement.requirement().bound();
-            beyond.map_or_else(|| "infinite".to_owned(), |run| beside(run.value, 6, limits))
+            let told = beyond.map(|run| beside(run.value, 6, limits));
+            told.map_or_else(|| "infinite".to_owned(), |told| in_unit(told, &unit(judged)))
         })
-        .numbers("beyond the limit by", |(.., beyond)| {
-            beyond.map_or_else(|| "–".to_owned(), |run| significant(run.excess, 4))
+        .numbers("beyond the limit by", |(judged, _, beyond)| {
+            let told = beyond.map(|run| significant(run.excess, 4));
+            told.map_or_else(|| "–".to_owned(), |told| in_unit(told, &unit(judged)))
         })
         .words("unusual in what it drew", |(judged, run, _)| told_unusual(judged, *run))
         .words(to_see_it, |(judged, run, _)| Text::default().code(again(&judged.model, *run)));
@@ -457,6 +468,21 @@ fn apart(judgement: &Judgement) -> impl Iterator<Item = String> {
 fn named(judgement: &Judgement) -> impl Iterator<Item = (u64, Option<&RunBeyond>)> {
     let infinite = judgement.first_infinite().iter().map(|run| (*run, None));
     infinite.chain(judgement.worst().iter().map(|run| (run.run, Some(run))))
+}
+
+/// The unit of a quantity, where the names of its columns do not tell it: that of all of them.
+fn unit_of(scenario: &impl Subject, quantity: &Measured) -> Option<String> {
+    let mut units = quantity.columns().iter().map(|column| scenario.unit(column));
+    let first = units.next()??;
+    units.all(|unit| unit.as_ref() == Some(&first)).then_some(first)
+}
+
+/// A number, or several, with a unit if there is one.
+fn in_unit(told: String, unit: &Option<String>) -> String {
+    match unit {
+        Some(unit) => format!("{told} {unit}"),
+        None => told,
+    }
 }
 
 /// The bound that a share keeps, rounded outwards, in the digits that tell it from the limits.

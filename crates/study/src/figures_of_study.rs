@@ -188,7 +188,9 @@ mod tests {
             ["a", "A-vs-b", "c", "b-vs-c", "b", "c-2", "vs-c", "c-vs-a", "a-vs-c", "b-vs-c-2"];
         let text = |from: usize, by: usize| {
             let names: Vec<&str> = (0..5).map(|i| pieces[(from + by * i) % pieces.len()]).collect();
-            let mut text = format!("{paper}[[models]]\nname = \"own\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n");
+            let mut text = format!(
+                "{paper}[[models]]\nname = \"own\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n"
+            );
             for name in &names {
                 text += &format!(
                     "[[models]]\nname = {name:?}\nlaw = \"wishart\"\nmatched_to = \"own\"\n"

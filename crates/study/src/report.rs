@@ -43,10 +43,11 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
     let models: Vec<&str> = summary.models.iter().map(|m| m.name.as_str()).collect();
     let vehicles = summary.head.fleet.map_or_else(String::new, |fleet| format!("{fleet}, "));
     let lead = Text::from("Scenario ").strong(&summary.head.scenario).plain(format!(
-        ": {vehicles}{} {} of each of the models {}, seed {}. Intervals have a confidence of {} %; p95 is the 95th \
+        ": {vehicles}{} {} of {} {}, seed {}. Intervals have a confidence of {} %; p95 is the 95th \
          percentile.",
         summary.head.runs_per_model,
         if summary.head.runs_per_model == 1 { "run" } else { "runs" },
+        if models.len() == 1 { "the model" } else { "each of the models" },
         models.join(", "),
         summary.head.seed,
         100.0 * summary.head.confidence

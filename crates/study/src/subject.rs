@@ -69,6 +69,10 @@ pub(crate) trait Subject: Framed + Sync {
     fn main_outcomes(&self) -> Vec<String>;
     /// A look at the runs of a model, which have these columns.
     fn look(&self, model: &str, columns: &[Column]) -> Self::Look<'_>;
+    /// The unit of a column, where its name does not tell it.
+    fn unit(&self, _column: &str) -> Option<String> {
+        None
+    }
     /// The name of the function that does the runs, if one does: no file holds it, so that no command does them again.
     fn function_name(&self) -> Option<&str> {
         None

@@ -58,15 +58,15 @@ proptest! {
         let judged: Vec<Judgement> = models.iter().filter_map(|numbers| judged(numbers, &requirement)).collect();
         let names: Vec<String> = (0..judged.len()).map(|i| format!("model {i}")).collect();
         let models: Vec<(&str, &Judgement)> = names.iter().map(String::as_str).zip(&judged).collect();
-        for drawing in [distribution_figure("f", "c", &requirement, &models), convergence_figure("f", "c", &requirement, &models, &[100, 1000])] {
+        for drawing in [distribution_figure("f", "c", &requirement, Some("m"), &models), convergence_figure("f", "c", &requirement, &models, &[100, 1000])] {
             let seen = read(&drawing.svg);
             prop_assert!(seen.contains("a <name>") && !seen.contains(": ."));
             prop_assert!(names.iter().all(|name| seen.contains(name)));
             let least = sizes(&drawing.svg).into_iter().fold(f64::INFINITY, f64::min);
             prop_assert!(least * 360.0 / crate::field::WIDTH >= 9.0, "{}", least);
         }
-        let seen = read(&distribution_figure("f", "c", &requirement, &models).svg);
-        prop_assert!(seen.contains("limit"));
+        let seen = read(&distribution_figure("f", "c", &requirement, Some("furlong"), &models).svg);
+        prop_assert!(seen.contains("limit") && seen.contains("x (furlong)"));
         let any_failed = judged.iter().any(|judgement| judgement.runs_without_number() > 0);
         prop_assert_eq!(seen.contains("failed or have no number"), any_failed);
         let any_bound = judged.iter().any(|judgement| judgement.tolerance().is_some());
@@ -106,7 +106,7 @@ fn the_line_reaches_both_tails() {
     // A limit that is far away leaves the runs readable.
     let far: Requirement = "x <= 1e6 in 99 % at 90 %".parse().unwrap();
     let judgement = judged(&numbers, &far).unwrap();
-    let seen = read(&svg(&far, &[("m", &judgement)]));
+    let seen = read(&svg(&far, None, &[("m", &judgement)]));
     assert!(seen.contains("is far off this axis"), "{seen}");
 }
 
@@ -183,7 +183,7 @@ fn limits_of_a_narrow_axis_are_told_apart() {
         let bound = Bound::Between(middle - half, middle + half);
         let requirement = Requirement::new("r", Measured::column("x"), bound, 0.9, 0.9).unwrap();
         let judgement = judged(&numbers, &requirement).unwrap();
-        let seen = read(&svg(&requirement, &[("m", &judgement)]));
+        let seen = read(&svg(&requirement, None, &[("m", &judgement)]));
         let told: Vec<&str> =
             seen.split("limit ").skip(1).map(|rest| rest.lines().next().unwrap()).collect();
         assert!(told.len() >= 2 && told[0] != told[1], "{middle} {half}: {told:?}\n{seen}");

@@ -391,3 +391,23 @@ proptest! {
         }
     }
 }
+
+/// What heavy tails mean is told once, however many models have them, and of each model which outcomes.
+#[test]
+fn heavy_tails_are_told_once() {
+    for models in [1, 2, 5] {
+        let outcomes = |i: i32| vec![(format!("outcome {i}"), 12.0), (format!("other {i}"), 40.0)];
+        let heavy = |i: i32| Alert::HeavyTails { model: format!("m{i}"), outcomes: outcomes(i) };
+        let (model, kinds) = ("m0".to_owned(), Vec::new());
+        let failed = Alert::Failed { model, failed: 1, runs: 2, kinds, first: None };
+        let alerts: Vec<Alert> = (0..models).map(heavy).flat_map(|of| [of, failed.clone()]).collect();
+        let page = gyradius_report::Document::new("t", "h", "l").sections(section(&alerts));
+        let page = page.markdown();
+        assert_eq!(page.matches("In brackets is the kurtosis").count(), 1, "{page}");
+        for i in 0..models {
+            assert!(page.contains(&format!("other {i} (40.0), outcome {i} (12.0)")), "{page}");
+            assert!(page.contains(&format!("m{i}")));
+        }
+        assert_eq!(page.matches("runs failed").count(), models as usize);
+    }
+}

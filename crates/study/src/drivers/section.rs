@@ -152,6 +152,12 @@ impl Driven {
             total: share(index.total()),
         };
         let groups = drivers.groups.iter().zip(self.indices.groups()).map(group).collect();
-        DrivenOutput { label: self.label(), groups }
+        // The bars say nothing then.
+        let few = if self.indices.is_of_few() {
+            format!(", too few runs differ: {}", self.indices.apart())
+        } else {
+            String::new()
+        };
+        DrivenOutput { label: format!("{}{few}", self.label()), groups }
     }
 }

@@ -1,7 +1,7 @@
 //! Campaigns of simulators as studies: how their runs are simulated, and what they amount to.
 
 use gyradius_campaign::{
-    Column, ExternalSimulation, Forecast, Progress, Runs, SampleSummary, Simulator,
+    Column, ExternalSimulation, Forecast, Kind, Progress, Runs, SampleSummary, Simulator,
     SimulatorFunction, Surveys, Unasked,
 };
 use gyradius_report::{Document, Overview, file_of, most_frequent, optional, resolved, with_unit};
@@ -237,6 +237,11 @@ impl Subject for SimulatorScenario {
         self.outputs().iter().map(|column| column.name().to_owned()).take(MAIN).collect()
     }
 
+    fn unit(&self, column: &str) -> Option<String> {
+        let own = self.columns().find(|own| own.name() == column)?;
+        own.unit().filter(|unit| *unit != "1").map(str::to_owned)
+    }
+
     fn look(&self, model: &str, columns: &[Column]) -> Looking {
         Looking::new(self, model, columns)
     }
@@ -290,7 +295,8 @@ impl Subject for SimulatorScenario {
     }
 
     fn report_files(&self) -> Vec<String> {
-        let figures = Overview::figure_names().iter().map(|name| file_of(name));
+        let numbers = self.columns().filter(|column| column.kind() == Kind::Number).count();
+        let figures = Overview::figure_names(numbers).map(|name| file_of(&name));
         let required = decisions::figure_names(self.requirements()).map(|name| file_of(&name));
         let driven = drivers::figure_names(self.drivers(), self.model_names());
         figures

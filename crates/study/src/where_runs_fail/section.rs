@@ -15,8 +15,8 @@ const CORRELATIONS: usize = 10;
 const FIFTHS: [&str; 5] = ["lowest", "second", "middle", "fourth", "highest"];
 
 /// Where runs fail, if a requirement has failures enough; and with which inputs outcomes rise and fall.
-pub(crate) fn sections(found: &[WhereRunsFail], vehicles: bool) -> Vec<Section> {
-    separating(found, vehicles).into_iter().chain(correlations(found, vehicles)).collect()
+pub(crate) fn sections(found: &[WhereRunsFail], vehicles: bool, required: bool) -> Vec<Section> {
+    separating(found, vehicles).into_iter().chain(correlations(found, vehicles, required)).collect()
 }
 
 /// A requirement with the model whose runs fail it.
@@ -173,7 +173,7 @@ fn p(p: f64) -> String {
 }
 
 /// With which inputs outcomes rise and fall.
-fn correlations(found: &[WhereRunsFail], vehicles: bool) -> Option<Section> {
+fn correlations(found: &[WhereRunsFail], vehicles: bool, required: bool) -> Option<Section> {
     let mut rows: Vec<(String, &str, Estimate)> = Vec::new();
     for of in found {
         for outcome in &of.rank_correlations {
@@ -182,10 +182,16 @@ fn correlations(found: &[WhereRunsFail], vehicles: bool) -> Option<Section> {
             rows.extend(shown.map(|(input, estimate)| (heading.clone(), input, estimate)));
         }
     }
+    // With requirements, what these are about is all that is asked.
+    let outcomes = if required {
+        "each quantity that the requirements of the model are about"
+    } else {
+        "each outcome"
+    };
     let reading = format!(
         "The rank correlation (Spearman) of an input and an outcome is 1 if the outcome always rises with the input, −1 if it always falls, \
          and near 0 if it does neither: also if the outcome is lowest for middle values of the input, although the input matters \
-         then. For each outcome the inputs are shown whose interval of 95 % leaves out 0, at most {CORRELATIONS}, the strongest first. \
+         then. For {outcomes} the inputs are shown whose interval of 95 % leaves out 0, at most {CORRELATIONS}, the strongest first. \
          About one in twenty inputs without any effect is shown by chance. {} Runs without the outcome, as those that failed, are \
          left out.",
         which(RANKED as u64, vehicles)

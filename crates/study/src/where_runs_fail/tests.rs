@@ -217,7 +217,7 @@ fn shown_pairs(found: &WhereRunsFail) -> Vec<[&str; 2]> {
 }
 
 fn page(found: &[WhereRunsFail]) -> String {
-    Document::new("t", "h", "l").sections(sections(found, false)).markdown()
+    Document::new("t", "h", "l").sections(sections(found, false, true)).markdown()
 }
 
 #[test]
