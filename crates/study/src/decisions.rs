@@ -15,6 +15,7 @@ use crate::{
     Ended, Fleet, ScenarioError, StudyError,
     head::{Head, Judged},
     subject::{Subject, Summarized},
+    unit::{in_unit, unit_of},
     unusual::{UnusualInput, unusual, without_rounding},
     where_runs_fail::{self, Asked},
 };
@@ -179,7 +180,7 @@ pub(crate) fn sections(scenario: &impl Subject, head: &Head) -> Vec<Section> {
     let table = PageTable::of(&head.requirements)
         .words("requirement", |judged| {
             let requirement = judged.judgement.requirement();
-            let bound = in_unit(requirement.bound().to_string(), &unit(judged));
+            let bound = in_unit(requirement.bound().to_string(), unit(judged).as_deref());
             let text = format!(
                 "{} {bound}, in {} of {}, with {} confidence",
                 requirement.quantity(),
@@ -205,14 +206,14 @@ pub(crate) fn sections(scenario: &impl Subject, head: &Head) -> Vec<Section> {
         .numbers("bound that the share keeps", |judged| {
             let limits = judged.judgement.requirement().bound();
             let told = judged.judgement.tolerance().map(|own| bound(own, limits));
-            told.map_or_else(|| "–".to_owned(), |told| in_unit(told, &unit(judged)))
+            told.map_or_else(|| "–".to_owned(), |told| in_unit(told, unit(judged).as_deref()))
         })
         .numbers("margin", |judged| {
             let judgement = &judged.judgement;
             let Some(margin) = judgement.margin() else { return PageCell::from("–") };
             let deviations = judgement.margin_deviations().map(|d| format!("{} σ", one_decimal(d)));
             let margin = significant(rounded_down(margin, 4), 4);
-            let cell = PageCell::from(Text::from(in_unit(margin, &unit(judged))));
+            let cell = PageCell::from(Text::from(in_unit(margin, unit(judged).as_deref())));
             deviations.into_iter().fold(cell, |cell, d| cell.line(Text::default().quiet(d)))
         })
         .numbers(of_share, |judged| {
@@ -391,11 +392,14 @@ fn worst(scenario: &impl Subject, head: &Head) -> Option<Section> {
         .numbers("value", |(judged, _, beyond)| {
             let limits = judged.judgement.requirement().bound();
             let told = beyond.map(|run| beside(run.value, 6, limits));
-            told.map_or_else(|| "infinite".to_owned(), |told| in_unit(told, &unit(judged)))
+            told.map_or_else(
+                || "infinite".to_owned(),
+                |told| in_unit(told, unit(judged).as_deref()),
+            )
         })
         .numbers("beyond the limit by", |(judged, _, beyond)| {
             let told = beyond.map(|run| significant(run.excess, 4));
-            told.map_or_else(|| "–".to_owned(), |told| in_unit(told, &unit(judged)))
+            told.map_or_else(|| "–".to_owned(), |told| in_unit(told, unit(judged).as_deref()))
         })
         .words("unusual in what it drew", |(judged, run, _)| told_unusual(judged, *run))
         .words(to_see_it, |(judged, run, _)| Text::default().code(again(&judged.model, *run)));
@@ -468,21 +472,6 @@ fn apart(judgement: &Judgement) -> impl Iterator<Item = String> {
 fn named(judgement: &Judgement) -> impl Iterator<Item = (u64, Option<&RunBeyond>)> {
     let infinite = judgement.first_infinite().iter().map(|run| (*run, None));
     infinite.chain(judgement.worst().iter().map(|run| (run.run, Some(run))))
-}
-
-/// The unit of a quantity, where the names of its columns do not tell it: that of all of them.
-fn unit_of(scenario: &impl Subject, quantity: &Measured) -> Option<String> {
-    let mut units = quantity.columns().iter().map(|column| scenario.unit(column));
-    let first = units.next()??;
-    units.all(|unit| unit.as_ref() == Some(&first)).then_some(first)
-}
-
-/// A number, or several, with a unit if there is one.
-fn in_unit(told: String, unit: &Option<String>) -> String {
-    match unit {
-        Some(unit) => format!("{told} {unit}"),
-        None => told,
-    }
 }
 
 /// The bound that a share keeps, rounded outwards, in the digits that tell it from the limits.

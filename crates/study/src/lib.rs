@@ -70,6 +70,7 @@ mod text;
 #[cfg(test)]
 mod two_loops;
 mod unfinished;
+mod unit;
 mod unmatched;
 mod unusual;
 mod where_runs_fail;

@@ -400,7 +400,8 @@ fn heavy_tails_are_told_once() {
         let heavy = |i: i32| Alert::HeavyTails { model: format!("m{i}"), outcomes: outcomes(i) };
         let (model, kinds) = ("m0".to_owned(), Vec::new());
         let failed = Alert::Failed { model, failed: 1, runs: 2, kinds, first: None };
-        let alerts: Vec<Alert> = (0..models).map(heavy).flat_map(|of| [of, failed.clone()]).collect();
+        let alerts: Vec<Alert> =
+            (0..models).map(heavy).flat_map(|of| [of, failed.clone()]).collect();
         let page = gyradius_report::Document::new("t", "h", "l").sections(section(&alerts));
         let page = page.markdown();
         assert_eq!(page.matches("In brackets is the kurtosis").count(), 1, "{page}");

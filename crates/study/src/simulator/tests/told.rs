@@ -18,6 +18,42 @@ fn reason(x: f64, failing: f64) -> Option<&'static str> {
     (x < failing).then(|| KINDS[((x / failing).sqrt() * KINDS.len() as f64) as usize])
 }
 
+/// Where a scenario declares a unit of an output, it stands at bound, margin, worst runs and the axis; and where the outputs of a
+/// requirement have several, none does.
+#[test]
+fn units_are_told_of_requirements() {
+    for (y, z, told) in [("m", "m", true), ("m", "s", false), ("1", "1", false)] {
+        let folder = folder();
+        let text = format!(
+            "runs = 80\n{SCENARIO}[[requirements]]\nname = \"low\"\nquantity = \"norm(y, z)\"\nat_most = 0.9\n\
+             probability = 0.6\nconfidence = 0.9\n"
+        );
+        let outputs = format!(
+            "name = \"y\"\nunit = \"{y}\"\n[[simulation.outputs]]\nname = \"z\"\nunit = \"{z}\"\n[[quant"
+        );
+        let text = text.replacen("name = \"y\"\n[[quant", &outputs, 1);
+        let twice = SimulatorFunction::new(move |run: &RunInputs<'_>| {
+            let x = run.input("x").ok_or("no x")?;
+            Ok(vec![("y".to_owned(), x), ("z".to_owned(), 0.0)])
+        });
+        let scenario = SimulatorScenario::from_toml(&text, folder.path()).unwrap();
+        let scenario = scenario.with_function(twice).unwrap();
+        let out = folder.path().join("out");
+        scenario.study(&Options::to(out.clone()), &|_| {}, &|_| {}).unwrap();
+        let page = fs::read_to_string(out.join("report.md")).unwrap();
+        let line = page.lines().find(|line| line.starts_with("| **low**")).unwrap();
+        assert_eq!(line.contains("at most 0.9 m, in"), told, "{line}");
+        let cells: Vec<&str> = line.split(" | ").collect();
+        assert_eq!([cells[4], cells[5]].iter().all(|cell| cell.contains(" m")), told, "{line}");
+        let worst = page
+            .lines()
+            .find(|line| line.contains("gyradius replay") || line.contains("study.replay"));
+        assert_eq!(worst.unwrap().matches(" m |").count(), if told { 2 } else { 0 }, "{worst:?}");
+        let figure = fs::read_to_string(out.join("figures/distribution-1.svg")).unwrap();
+        assert_eq!(figure.contains("norm(y, z) (m)"), told);
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
