@@ -1,6 +1,7 @@
 //! A figure of one panel that can be read on a telephone: 480 wide, and no text below 12, so that it is 9 in 360 pixels.
 
 use crate::axis::{Spacing, Tick, Units, ticks};
+use crate::inline::with_signs;
 use crate::legend::{Entry, legend};
 use crate::style::{self, MARGIN};
 use crate::svg::{Anchor, Look, Svg, px};
@@ -129,7 +130,7 @@ impl Field {
     /// The whole figure.
     pub(crate) fn finish(self, title: &str, description: &str) -> String {
         let mut svg = Svg::new();
-        let y = svg.heading(title, WIDTH);
+        let y = svg.heading(&with_signs(title), WIDTH);
         let y = legend(&mut svg, self.entries, y + 4.0, WIDTH) + 42.0;
         svg.place(MARGIN + LABELS, y, &self.plot);
         let mut y = y + HIGH + 42.0;

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::data::{self, Sheet};
+use crate::inline::with_signs;
 use crate::{AttitudeSpheres, HistogramGrid, LineGrid, RangeGrid};
 
 /// A figure with what it shows. Kept as data it can be drawn again, to the byte, from results that were
@@ -81,7 +82,7 @@ pub struct Drawing {
 impl Drawing {
     /// A figure of a name, with what stands below it.
     pub(crate) fn new(name: &str, caption: &str, svg: String) -> Self {
-        Self { name: name.to_owned(), caption: caption.to_owned(), svg, numbers: None }
+        Self { name: name.to_owned(), caption: with_signs(caption), svg, numbers: None }
     }
 
     /// With its numbers as JSON, in which nothing ends a script.

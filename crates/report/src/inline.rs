@@ -116,7 +116,7 @@ impl Text {
 }
 
 /// A text with − before numbers that are less than zero: not within words and powers of ten, nor between numbers.
-fn with_signs(text: &str) -> String {
+pub(crate) fn with_signs(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut left = text.chars().peekable();
     while let Some(c) = left.next() {

@@ -1,6 +1,6 @@
 //! Tables of a page: columns, each declared with what it says of a row.
 
-use crate::inline::Text;
+use crate::inline::{Text, with_signs};
 
 /// A table. Its first column names the rows.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -120,7 +120,7 @@ impl<'a, R> TableOf<'a, R> {
     #[must_use]
     pub fn groups(mut self, heading: impl Fn(&'a R) -> String) -> Self {
         for (row, thing) in self.table.rows.iter_mut().zip(self.things) {
-            row.group = Some(heading(thing));
+            row.group = Some(with_signs(&heading(thing)));
         }
         self
     }
