@@ -189,7 +189,7 @@ fn drivers_of_what_seldom_happens_are_warned_of() {
     // Beside the bars, too, where the others have no such mark.
     let figure = fs::read_to_string(out.join("figures/drivers-all.svg")).unwrap();
     assert!(figure.contains("fails: up to 0.98, too few runs differ: "), "{figure}");
-    assert_eq!(figure.matches(", too few runs differ").count(), 1, "{figure}");
+    assert!(!figure.contains("up to 0.5, too few") && !figure.contains("y, too few"), "{figure}");
 }
 
 /// Numbers of any size are written in a few digits, on every page and figure and on the terminal.
