@@ -138,9 +138,16 @@ fn of_vehicles_the_first_flights_are_judged() {
         assert!(String::from_utf8(lost.stdout).unwrap().contains("450 runs"));
         let warned = String::from_utf8(lost.stderr).unwrap();
         assert!(
-            warned.contains("not the column run") && warned.starts_with("warning: "),
+            warned.contains("not all three columns run, vehicle and flight")
+                && warned.starts_with("warning: "),
             "{warned}"
         );
+        // Or the flight, under names of its own.
+        let rows: String = (0..450).map(|run| format!("{run},{},1.0\n", run / 5)).collect();
+        fs::write(scratch.path("lost.csv"), format!("run,Vehicle,y\n{rows}")).unwrap();
+        let lost = scratch.run(&["verdict", "lost.csv", "--require", "y <= 5 in 90 % at 90 %"]);
+        let warned = String::from_utf8(lost.stderr).unwrap();
+        assert!(warned.contains("has the column Vehicle, but not all three columns"), "{warned}");
         // Or one in which they do not belong together: vehicles from 1, and a cell that is blank.
         let from_1 = |run: u32| format!("{run},{},{},1.0\n", run / 5 + 1, run % 5 + 1);
         let blank = |run: u32| match run {

@@ -824,7 +824,8 @@ fn memory(text: &str) -> Result<String, String> {
     if !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit()) {
         return Ok(text.to_owned());
     }
-    Err("it must be a whole number of megabytes, or one with K, M, G or T after it, as 4G".to_owned())
+    Err("it must be a whole number of megabytes, or one with K, M, G or T after it, as 4G"
+        .to_owned())
 }
 
 /// A level of a comparison in percent of the largest moment: 5 or 5%.

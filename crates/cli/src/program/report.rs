@@ -1,7 +1,7 @@
 //! `gyradius report`: the report of a study made again, or of one whose runs are put together now.
 
 use gyradius_campaign::threads;
-use gyradius_study::{Notice, Options, is_begun, put_together, replacement, write_report};
+use gyradius_study::{Notice, Options, Status, is_begun, put_together, replacement, write_report};
 use std::{
     error::Error,
     path::{Path, PathBuf},
@@ -20,6 +20,9 @@ pub(crate) fn report(arguments: &ReportArgs) -> Result<ExitCode, Box<dyn Error>>
     }
     if !is_begun(folder)? {
         let written = write(folder, arguments)?;
+        if Status::read(folder).is_ok_and(|status| status.drivers_left) {
+            notice(Notice::DriversLeft);
+        }
         print(&format!("report: {}\n", written.join("report.html").display()))?;
         return Ok(ExitCode::SUCCESS);
     }

@@ -224,7 +224,10 @@ fn seldom_events_are_told() {
                     let (n, p) = (2.0 * runs as f64, happened as f64 / (2.0 * runs as f64));
                     let effective = n * p * (1.0 - p) / (1.0 - 3.0 * p * (1.0 - p));
                     let found = indices.effective_runs();
-                    assert!((found - effective).abs() <= 0.01 * effective, "{found} is not {effective}");
+                    assert!(
+                        (found - effective).abs() <= 0.01 * effective,
+                        "{found} is not {effective}"
+                    );
                     assert_eq!(indices.is_of_few(), told, "{limit} {runs}: {happened}");
                 }
                 Err(error) => assert_eq!((error, happened), (StatisticsError::Constant, 0)),

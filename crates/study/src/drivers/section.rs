@@ -72,9 +72,8 @@ pub(crate) fn told(total: &Estimate) -> String {
 fn of_few(drivers: &Drivers) -> Option<Text> {
     let few: Vec<&Driven> = drivers.outputs.iter().filter(|d| d.indices.is_of_few()).collect();
     let named = few.iter().take(NAMED);
-    let named = named.map(|driven| {
-        format!("{} ({:.0})", driven.label(), driven.indices.effective_runs())
-    });
+    let named =
+        named.map(|driven| format!("{} ({:.0})", driven.label(), driven.indices.effective_runs()));
     let named: Vec<String> = named.collect();
     let others = match few.len().saturating_sub(NAMED) {
         0 => String::new(),
@@ -153,11 +152,7 @@ impl Driven {
         };
         let groups = drivers.groups.iter().zip(self.indices.groups()).map(group).collect();
         // The bars say nothing then.
-        let few = if self.indices.is_of_few() {
-            format!(", too few runs differ: {}", self.indices.apart())
-        } else {
-            String::new()
-        };
+        let few = if self.indices.is_of_few() { ", too few runs count" } else { "" };
         DrivenOutput { label: format!("{}{few}", self.label()), groups }
     }
 }

@@ -188,7 +188,7 @@ fn drivers_of_what_seldom_happens_are_warned_of() {
     assert!(!warning.contains("up to 0.5") && !warning.contains(" y ("), "{warning}");
     // Beside the bars, too, where the others have no such mark.
     let figure = fs::read_to_string(out.join("figures/drivers-all.svg")).unwrap();
-    assert!(figure.contains("fails: up to 0.98, too few runs differ: "), "{figure}");
+    assert!(figure.contains("fails: up to 0.98, too few runs count"), "{figure}");
     assert!(!figure.contains("up to 0.5, too few") && !figure.contains("y, too few"), "{figure}");
 }
 
