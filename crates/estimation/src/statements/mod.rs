@@ -3,6 +3,7 @@
 mod amount;
 mod diagnosis;
 mod entries;
+mod frame;
 pub(crate) mod levenberg_marquardt;
 mod nodes;
 mod parts;
@@ -131,15 +132,16 @@ impl Statements {
         let stated = self.stated(nominal, mass_kg)?;
         let body = Body::new(nominal);
         let task = stated.task(body, nominal, mass);
-        let solution = task.solve();
+        let solution = task.solve()?;
         let mass = mass.map(|relative| StatedMass::new(relative, solution.follows));
         let centre = self.centre.map(|centre| centre.deviations());
         let model = StatedModel::new(nominal, &body, &stated, mass, centre, solution.scatter)?;
         // What the products would do without a limit of the axes, and alone: asked only where a warning depends on it.
         let short = diagnosis::products_fall_short(&model, &stated);
         let limited = stated.products.is_some() && stated.axes.is_some();
-        let without =
-            |asked: bool, task: Task| asked.then(|| Outcome::new(&body, &task.solve())).transpose();
+        let without = |asked: bool, task: Task| {
+            asked.then(|| Outcome::new(&body, &task.solve()?)).transpose()
+        };
         let unlimited = without(limited && short, Task { axes: None, ..task })?;
         let products = Task { moments: Asked::Nothing, axes: None, loose: true, ..task };
         let alone = without(limited || (short && stated.moments.is_some()), products)?;

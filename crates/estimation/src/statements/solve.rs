@@ -1,6 +1,8 @@
 //! The scatter that gives the entries the deviations that are asked for, as nearly as any does that is found.
 
 use super::{
+    StatementError,
+    frame::Frame,
     levenberg_marquardt::{Effort, least_squares},
     scatter::Scatter,
     task::{Asked, Point, Task},
@@ -43,8 +45,14 @@ pub(super) struct Solution {
 }
 
 impl Task {
+    /// The best scatter that is found, which does not depend on how the axes of the body are named and pointed.
+    pub(super) fn solve(&self) -> Result<Solution, StatementError> {
+        let frame = Frame::of(self);
+        Ok(frame.back(&frame.task(self)?.best()))
+    }
+
     /// The inertia follows the mass wholly, unless what is stated comes out far nearer if it follows less.
-    pub(super) fn solve(&self) -> Solution {
+    fn best(&self) -> Solution {
         let mut best = self.search(false);
         let most = self.mass.map_or(0.0, |(_, most)| most);
         let miss = self.worst(&best);
