@@ -2,7 +2,7 @@
 //! pointed, so that what is found does not depend on that.
 
 use gyradius_inertia::{PrincipalAxes, RootSecondMoments};
-use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
+use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion};
 
 use super::{
     StatementError,
@@ -13,6 +13,8 @@ use super::{
 
 /// Numbers that differ by less than this share of the largest are equal where frames are compared: far above rounding.
 const EQUAL: f64 = 1e-9;
+/// The last digit of second moments, as shares of the largest, and of quaternions: 2⁻⁴³.
+const LAST_DIGIT: f64 = 1.0 / (1_u64 << 43) as f64;
 
 /// Three axes under other names and with other directions: the new axis i is the old one `order[i]`, times `signs[i]`.
 #[derive(Clone, Copy, Debug)]
@@ -132,15 +134,23 @@ impl Frame {
         self.principal.matrix() * rotation.matrix() * self.body.matrix().transpose()
     }
 
-    /// A task as it is in this frame.
+    /// A task as it is in this frame, of the body without its last digits: a long search makes much of differences that rounding
+    /// alone makes between the frames in which a body is given.
     pub(super) fn task(&self, task: &Task) -> Result<Task, StatementError> {
         let Self { body, principal } = self;
-        let roots = RootSecondMoments::new(principal.of(task.body.roots.values()))
+        let digits = |x: f64, size: f64| (x / size / LAST_DIGIT).round() * LAST_DIGIT * size;
+        let k = principal.of(task.body.roots.squared().values());
+        let largest = k.into_iter().fold(0.0, f64::max);
+        let k = k.map(|k| digits(k, largest));
+        let roots = RootSecondMoments::new(k.map(f64::sqrt))
             .map_err(|e| StatementError::Law { problem: e.to_string() })?;
         let rotation = Rotation3::from_matrix_unchecked(self.rotation(&task.body));
-        let attitude = UnitQuaternion::from_rotation_matrix(&rotation);
+        let attitude = UnitQuaternion::from_rotation_matrix(&rotation).coords;
+        let attitude = attitude.map(|x| digits(x, 1.0));
+        let attitude = UnitQuaternion::new_normalize(Quaternion::from_vector(attitude));
         Ok(Task {
             body: Body { attitude, roots },
+            trace: 2.0 * k.iter().sum::<f64>(),
             moments: task.moments.map(|three| body.of(three)),
             products: task.products.map(|three| self.pairs(three)),
             axes: task.axes.map(|three| principal.of(three)),

@@ -6,7 +6,7 @@ use super::{
     levenberg_marquardt::{Effort, least_squares},
     scatter::Scatter,
     task::{Asked, Point, Task},
-    unknowns::{ROOTS_BESIDE, SHARE, TURN_ANGLES, TURNS, Trial, UNKNOWNS, Unknowns, Values},
+    unknowns::{ROOTS, ROOTS_BESIDE, SHARE, TURN_ANGLES, TURNS, Trial, UNKNOWNS, Unknowns, Values},
 };
 
 /// Relative errors of deviations up to which what is asked is had.
@@ -27,10 +27,14 @@ const START: f64 = 0.7;
 /// Their signs.
 const SIGNS: [[f64; 3]; 4] =
     [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
-/// Starts all over the unknowns.
+/// Starts all over the unknowns, and how far apart they are, in units of each unknown.
 const ANYWHERE: u32 = 100;
-/// How far apart they are, in units of each unknown.
 const WIDE: f64 = 1.5;
+/// The same without correlations, where deviations of very different size may be what is asked.
+const INDEPENDENT: u32 = 16;
+const VERY_WIDE: f64 = 3.0;
+/// Where the nearest of these starts costs less after some steps, what is asked may well be had.
+const WITHIN_REACH: f64 = 0.1;
 /// Of these, the best are followed after some steps.
 const FOLLOWED: usize = 8;
 
@@ -82,14 +86,14 @@ impl Task {
     fn search(&self, shares: bool) -> Point {
         let mut unknowns = Unknowns::new(self, shares);
         let mut best = unknowns.downhill(unknowns.guess);
-        if self.worst(&best.0.at) > MET {
+        unknowns.independently(&mut best);
+        if unknowns.misses(&best) {
             unknowns = unknowns.correlated();
             best = unknowns.with_correlations(best);
         }
         // Where the moments cannot be had, the products may be, beside the moments as they are: the errors of the
         // moments, which count for so much more, hide those of the products.
-        let both = self.moments.is_stated() && self.products.is_stated();
-        if both && self.worst(&best.0.at) > MET {
+        if self.has_valleys() && self.worst(&best.0.at) > MET {
             let mut moments = [0.0; 3];
             for it in self.compare(&best.0.at).iter().filter(|it| it.entry < 3) {
                 moments[it.entry] = it.found.sqrt();
@@ -98,9 +102,14 @@ impl Task {
             let beside = unknowns.of(&held);
             best = beside.downhill(best.0.x);
             let around = beside.around(&best.0.x);
-            beside.improve(&mut best, around);
+            beside.improve(&mut best, &around);
         }
         best.0.at
+    }
+
+    /// Whether the moments count for so much more than the products that the way to both is a narrow valley.
+    fn has_valleys(&self) -> bool {
+        self.moments.is_stated() && self.products.is_stated()
     }
 }
 
@@ -124,15 +133,42 @@ impl Unknowns<'_> {
     }
 
     /// Takes the first start that does, or the best of them, if it is better.
-    fn improve(&self, best: &mut (Trial, f64), starts: Vec<Values>) {
+    fn improve(&self, best: &mut (Trial, f64), starts: &[Values]) {
         for start in starts {
             if !self.misses(best) {
                 return;
             }
-            let found = self.downhill(start);
-            if found.1 < (1.0 - WORTH) * best.1 {
+            let found = self.downhill(*start);
+            if !self.misses(&found) || found.1 < (1.0 - WORTH) * best.1 {
                 *best = found;
             }
+        }
+    }
+
+    /// The same from where these starts lead if all errors count alike: if what is asked can be had, it is had there.
+    fn improve_evenly(&self, best: &mut (Trial, f64), starts: &[Values]) {
+        let even = self.evenly();
+        for start in starts {
+            if !self.misses(best) {
+                return;
+            }
+            let there = even.downhill(*start);
+            self.improve(best, &[there.0.x]);
+            // What is asked may be had within rounding of its numbers, and not where the moments are had to the last digit.
+            if self.misses(best) && !self.misses(&there) {
+                *best = there;
+            }
+        }
+    }
+
+    /// The best with independent roots and rotations, from all over them.
+    fn independently(&self, best: &mut (Trial, f64)) {
+        if self.task.has_valleys() {
+            self.improve_evenly(best, &[self.guess]);
+        }
+        if self.misses(best) {
+            let (nearest, _) = self.evenly().nearest(INDEPENDENT, VERY_WIDE);
+            self.improve_evenly(best, &nearest);
         }
     }
 
@@ -147,16 +183,24 @@ impl Unknowns<'_> {
         }
         let mut best = independent;
         best.0.x = self.expressed(&independent.0, 1e-12);
-        self.improve(&mut best, vec![again, guess]);
+        if self.task.has_valleys() {
+            self.improve_evenly(&mut best, &[again, guess]);
+        }
+        self.improve(&mut best, &[again, guess]);
+        if self.task.has_valleys() && self.misses(&best) {
+            let (nearest, cost) = self.evenly().nearest(ANYWHERE, WIDE);
+            if cost < WITHIN_REACH {
+                self.improve_evenly(&mut best, &nearest);
+            }
+        }
         if self.misses(&best) {
-            let mut found: Vec<_> = self.anywhere().map(|x| self.steps(x, Effort::SHORT)).collect();
-            found.sort_by(|a, b| a.1.total_cmp(&b.1));
-            let nearest = found.iter().take(FOLLOWED).map(|it| it.0.x).collect();
-            self.improve(&mut best, nearest);
+            let (nearest, _) = self.nearest(ANYWHERE, WIDE);
+            self.improve(&mut best, &nearest);
         }
         for _ in 0..AGAIN {
-            let (before, around) = (best.1, self.around(&best.0.x));
-            self.improve(&mut best, around);
+            let before = best.1;
+            let around = self.around(&best.0.x);
+            self.improve(&mut best, &around);
             if best.1 == before {
                 break;
             }
@@ -164,16 +208,27 @@ impl Unknowns<'_> {
         best
     }
 
+    /// Where some steps lead from points all over the unknowns: the best of them, and the least of their costs.
+    fn nearest(&self, count: u32, wide: f64) -> (Vec<Values>, f64) {
+        let starts = self.anywhere(count, wide);
+        let mut found: Vec<_> = starts.map(|x| self.steps(x, Effort::SHORT)).collect();
+        found.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let least = found.first().map_or(f64::INFINITY, |it| it.1);
+        (found.into_iter().take(FOLLOWED).map(|it| it.0.x).collect(), least)
+    }
+
     /// Points all over the open unknowns: multiples of √p, p prime, modulo 1 (Richtmyer 1951).
-    fn anywhere(&self) -> impl Iterator<Item = Values> {
+    fn anywhere(&self, count: u32, wide: f64) -> impl Iterator<Item = Values> {
         const PRIMES: [u16; UNKNOWNS] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41];
-        (1..=ANYWHERE).map(|n| {
+        let independent = !self.open.contains(&ROOTS_BESIDE);
+        (1..=count).map(move |n| {
             let mut x = self.guess;
             for &i in &self.open {
                 let part = f64::from(n) * f64::from(PRIMES[i]).sqrt();
-                let off = WIDE * (2.0 * (part - part.floor()) - 1.0);
+                let off = wide * (2.0 * (part - part.floor()) - 1.0);
                 match i {
                     TURNS..TURN_ANGLES => x[i] *= libm::exp(off),
+                    ROOTS..ROOTS_BESIDE if independent => x[i] *= libm::exp(off),
                     SHARE => (),
                     _ => x[i] = off,
                 }
@@ -183,9 +238,9 @@ impl Unknowns<'_> {
     }
 
     /// Correlations of every pair of signs on top.
-    fn around(&self, x: &Values) -> Vec<Values> {
+    fn around(&self, x: &Values) -> [Values; 4] {
         let open = |first: &usize| self.open.contains(first);
-        let starts = SIGNS.map(|signs| {
+        SIGNS.map(|signs| {
             let mut start = *x;
             for first in [ROOTS_BESIDE, TURN_ANGLES].into_iter().filter(open) {
                 for (i, sign) in (first..).zip(signs) {
@@ -193,7 +248,6 @@ impl Unknowns<'_> {
                 }
             }
             start
-        });
-        starts.into()
+        })
     }
 }

@@ -74,8 +74,13 @@ pub(super) struct Compared {
 impl Compared {
     /// The relative error of the deviation, where it is small. In logarithms, so that errors of entries that cannot be
     /// had do not outweigh all others.
-    pub(super) fn error(&self) -> f64 {
-        let error = 0.5 * libm::log((self.found + self.least) / (self.wanted + self.least));
+    fn error(&self) -> f64 {
+        0.5 * libm::log((self.found + self.least) / (self.wanted + self.least))
+    }
+
+    /// What that costs.
+    pub(super) fn cost(&self) -> f64 {
+        let error = self.error();
         if error < 0.0 { SURER * error } else { error }
     }
 }

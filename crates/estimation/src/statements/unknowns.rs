@@ -40,6 +40,8 @@ pub(super) struct Unknowns<'a> {
     basis: Matrix3<f64>,
     pub(super) open: Vec<usize>,
     pub(super) guess: Values,
+    /// No error counts more than that of a product.
+    evenly: bool,
 }
 
 /// Values of all unknowns, and where they lead.
@@ -64,7 +66,13 @@ impl<'a> Unknowns<'a> {
             open.push(SHARE);
         }
         let basis = Matrix3::from_diagonal(&first_roots(task));
-        Self { task, basis, open, guess: first_guess(task) }
+        Self { task, basis, open, guess: first_guess(task), evenly: false }
+    }
+
+    /// The same where no error counts more than that of a product: where all that is asked can be had, it is the same that is
+    /// best, and the way to it has no narrow valleys.
+    pub(super) fn evenly(&self) -> Self {
+        Self { evenly: true, ..self.clone() }
     }
 
     /// The correlations as well.
@@ -147,7 +155,8 @@ impl Problem for Unknowns<'_> {
 
     fn residuals(&self, trial: &Trial) -> DVector<f64> {
         let compared = self.task.compare(&trial.at);
-        let errors = compared.iter().map(|it| it.error() * it.counts);
+        let most_counts = if self.evenly { 1.0 } else { f64::INFINITY };
+        let errors = compared.iter().map(|it| it.cost() * it.counts.min(most_counts));
         let most = most_turns(self.task);
         let costs = self.open.iter().map(|&i| match i {
             ROOTS..ROOTS_BESIDE => PULL * trial.x[i],
