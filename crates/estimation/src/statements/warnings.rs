@@ -43,7 +43,7 @@ pub enum StatementWarning {
         #[cfg_attr(feature = "serde", serde(rename = "stated_kg_m2"))]
         stated: f64,
     },
-    /// The second moments are correlated, for independent ones do not have the stated deviations.
+    /// The second moments are correlated, for no independent ones were found that have the stated deviations.
     Correlated,
     /// Moments that scatter as stated and independently would often be those of no body.
     Impossible {
@@ -235,8 +235,8 @@ impl fmt::Display for StatementWarning {
                 Ok(())
             }
             Self::Correlated => f.write_str(
-                "the second moments are correlated: independent ones cannot have the deviations that \
-                 follow from what is stated",
+                "the second moments are correlated: no independent ones were found that have the deviations \
+                 that follow from what is stated",
             ),
             Self::Impossible { axis, share } => write!(
                 f,
