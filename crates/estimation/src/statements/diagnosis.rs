@@ -8,7 +8,7 @@ use super::{
     MissedBecause, Stated, StatedModel, StatementError, StatementWarning,
     entries::Forms,
     scatter::{Body, Scatter},
-    solve::Solution,
+    task::Solution,
 };
 use crate::turns::FIXED;
 

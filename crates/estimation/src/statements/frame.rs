@@ -7,8 +7,7 @@ use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion};
 use super::{
     StatementError,
     scatter::{Body, Scatter},
-    solve::Solution,
-    task::Task,
+    task::{Solution, Task},
 };
 
 /// Numbers that differ by less than this share of the largest are equal where frames are compared: far above rounding.

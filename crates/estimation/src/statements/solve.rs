@@ -4,8 +4,7 @@ use super::{
     StatementError,
     frame::Frame,
     levenberg_marquardt::{Effort, least_squares},
-    scatter::Scatter,
-    task::{Asked, Point, Task},
+    task::{Asked, Point, Solution, Task},
     unknowns::{ROOTS, ROOTS_BESIDE, SHARE, TURN_ANGLES, TURNS, Trial, UNKNOWNS, Unknowns, Values},
 };
 
@@ -37,16 +36,6 @@ const VERY_WIDE: f64 = 3.0;
 const WITHIN_REACH: f64 = 0.1;
 /// Of these, the best are followed after some steps.
 const FOLLOWED: usize = 8;
-
-/// The best scatter that was found.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Solution {
-    pub(super) scatter: Scatter,
-    /// The share of the mass's relative change that the inertia takes.
-    pub(super) follows: f64,
-    /// The deviations that a mass centre would give entries beside everything else, kg·m².
-    pub(super) with_centre: [Option<f64>; 6],
-}
 
 impl Task {
     /// The best scatter that is found, which does not depend on how the axes of the body are named and pointed.

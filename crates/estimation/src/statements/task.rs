@@ -59,6 +59,16 @@ pub(super) struct Point {
     pub(super) follows: f64,
 }
 
+/// The best scatter that was found.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Solution {
+    pub(super) scatter: Scatter,
+    /// The share of the mass's relative change that the inertia takes.
+    pub(super) follows: f64,
+    /// The deviations that a mass centre would give entries beside everything else, kg·m².
+    pub(super) with_centre: [Option<f64>; 6],
+}
+
 /// What is asked of an entry, and what it has: variances, (kg·m²)².
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Compared {
