@@ -14,6 +14,7 @@ mod planted;
 mod reasons;
 mod slender;
 mod still;
+mod turns;
 
 fn body(moments: [f64; 3], products: [f64; 3]) -> Inertia {
     Inertia::try_from(InertiaMatrix::from_entries(moments, products).unwrap()).unwrap()
