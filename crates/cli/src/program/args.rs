@@ -810,7 +810,10 @@ fn time_limit(text: &str) -> Result<String, String> {
     };
     let is_time = match text.split_once('-') {
         Some((days, rest)) => number(days) && parts(rest, 3),
-        None => parts(text, 3) || text.eq_ignore_ascii_case("unlimited"),
+        None => {
+            parts(text, 3)
+                || ["unlimited", "infinite"].iter().any(|word| text.eq_ignore_ascii_case(word))
+        }
     };
     let allowed = "it must be minutes, minutes:seconds, hours:minutes:seconds, days-hours, days-hours:minutes, days-hours:minutes:seconds \
                    or UNLIMITED";
@@ -819,8 +822,10 @@ fn time_limit(text: &str) -> Result<String, String> {
 
 /// A size of memory as `sbatch` has it: megabytes, or a number with a unit.
 fn memory(text: &str) -> Result<String, String> {
-    let number = text.strip_suffix(['b', 'B']).unwrap_or(text);
-    let number = number.strip_suffix(['k', 'K', 'm', 'M', 'g', 'G', 't', 'T']).unwrap_or(number);
+    const UNITS: [char; 8] = ['k', 'K', 'm', 'M', 'g', 'G', 't', 'T'];
+    let of_bytes = text.strip_suffix(['b', 'B']).filter(|size| size.ends_with(UNITS));
+    let size = of_bytes.unwrap_or(text);
+    let number = size.strip_suffix(UNITS).unwrap_or(size);
     if !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit()) {
         return Ok(text.to_owned());
     }

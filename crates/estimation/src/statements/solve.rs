@@ -172,10 +172,10 @@ impl Unknowns<'_> {
         }
         let mut best = independent;
         best.0.x = self.expressed(&independent.0, 1e-12);
+        self.improve(&mut best, &[again, guess]);
         if self.task.has_valleys() {
             self.improve_evenly(&mut best, &[again, guess]);
         }
-        self.improve(&mut best, &[again, guess]);
         if self.task.has_valleys() && self.misses(&best) {
             let (nearest, cost) = self.evenly().nearest(ANYWHERE, WIDE);
             if cost < WITHIN_REACH {

@@ -38,17 +38,17 @@ impl Film {
         let knee = f64::min(1.2 * pushing_s, end);
         let mut events = events.peekable();
         let mut film = Self::default();
+        let rates: Vec<f64> = steps.iter().map(fastest).collect();
         let mut next = 0.0;
-        for step in steps {
+        for (place, step) in steps.iter().enumerate() {
             while next < step.end_s() {
                 film.push(separation, step, next);
                 if film.is_cut {
                     return film;
                 }
-                let states = step.states_at(next);
-                let fastest = rate(&states).max(rate(&step.states_at(step.end_s())));
                 let part = if next < knee { knee } else { end - knee };
-                let later = next + f64::min(part / HALF, TURN / fastest.max(f64::MIN_POSITIVE));
+                let coming = steps[place..].iter().zip(&rates[place..]);
+                let later = f64::min(next + part / HALF, turned(next, coming));
                 while events.next_if(|event| *event <= next).is_some() {}
                 let event = events.peek().copied().unwrap_or(f64::INFINITY);
                 // A step of time that is none is no reason to stand still.
@@ -81,6 +81,25 @@ impl Film {
     pub(super) fn cut_s(&self) -> Option<f64> {
         self.frames.last().filter(|_| self.is_cut).map(|frame| frame.time_s)
     }
+}
+
+/// The rate of the faster body in a step, at its start or its end, rad/s.
+fn fastest(step: &Step) -> f64 {
+    rate(&step.states_at(step.start_s())).max(rate(&step.states_at(step.end_s())))
+}
+
+/// Until when neither body turns too far from a moment on, s: infinity if it does not in these steps, which have these rates.
+fn turned<'s>(from: f64, steps: impl Iterator<Item = (&'s Step, &'s f64)>) -> f64 {
+    let (mut time, mut left) = (from, TURN);
+    for (step, rate) in steps {
+        let turn = rate * (step.end_s() - time).max(0.0);
+        if turn >= left {
+            return time + left / rate;
+        }
+        left -= turn;
+        time = step.end_s();
+    }
+    f64::INFINITY
 }
 
 #[cfg(test)]
@@ -134,6 +153,42 @@ mod tests {
                 let time = moment.now.time_s();
                 assert!(time > last || frames.iter().any(|frame| frame.time_s == time), "{time}");
             }
+        }
+    }
+
+    /// From rest, by a spring that is done long before another: it is not passed over.
+    #[test]
+    fn a_short_push_is_shown_beside_a_long_one() {
+        let body = |z: f64, scale: f64| {
+            format!(
+                "mass_kg = {:?}\ninertia_kg_m2 = [[{:?}, 0.0, 0.0], [0.0, {:?}, 0.0], [0.0, 0.0, {:?}]]\nposition_m = [0.0, 0.0, {z:?}]\n\
+                 dispersion = {{ root_second_moment_variance_kg_m2 = [0.0, 0.0, 0.0], axes = \"fixed\" }}\n",
+                500.0 * scale,
+                12.0 * scale,
+                11.0 * scale,
+                9.0 * scale
+            )
+        };
+        let spring = |stiffness: f64, stroke: f64, y: f64| {
+            format!(
+                "[[springs]]\nstiffness_n_per_m = {stiffness:?}\nstroke_m = {stroke:?}\npayload_point_m = [0.0, {y:?}, -0.9]\nstage_point_m = [0.0, {y:?}, 0.9]\n"
+            )
+        };
+        let text = format!(
+            "name = \"two\"\nruns = 1\nseed = 1\n[payload]\n{}[stage]\n{}{}{}[[models]]\nname = \"own\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n",
+            body(1.0, 1.0),
+            body(-1.0, 40.0),
+            spring(2e4, 0.6, 0.5),
+            spring(1.0, 300.0, 0.0)
+        );
+        let replay = Replay::new(&Scenario::from_toml(&text).unwrap(), None, 0, 5.0).unwrap();
+        let frames = replay.film.frames();
+        let released = replay.history.releases.iter().map(|(_, time)| *time).fold(1.0, f64::min);
+        let before = frames.iter().filter(|frame| frame.time_s < released).count();
+        assert!(before >= 2, "{before} before {released}");
+        for pair in frames.windows(2) {
+            let [a, b] = [&pair[0], &pair[1]].map(|frame| frame.payload.state().attitude);
+            assert!(a.angle_to(&b) <= 1.01 * TURN, "{} at {}", a.angle_to(&b), pair[0].time_s);
         }
     }
 

@@ -115,8 +115,8 @@ fn data(replay: &Replay) -> Value {
                 "late": pushes && load.start_s().is_some_and(|start| start > 0.0),
                 "p": short(payload.as_slice()),
                 "s": short(stage.as_slice()),
-                "from": load.start_s().filter(|_| pushes).map(|s| short(&[s])[0].clone()),
-                "free": released.map(|(_, time)| short(&[*time])[0].clone()),
+                "from": load.start_s().filter(|_| pushes),
+                "free": released.map(|(_, time)| time),
             })
         })
         .collect();
@@ -127,7 +127,7 @@ fn data(replay: &Replay) -> Value {
     });
     let closest = replay.clearance.as_ref().and_then(Clearance::closest).map(|c| {
         json!({
-            "t": short(&[c.time_s()])[0],
+            "t": c.time_s(),
             "d": short(&[c.distance_m()])[0],
             "p": short(c.payload_point_m().as_slice()),
             "s": short(c.stage_point_m().as_slice()),
@@ -141,7 +141,7 @@ fn data(replay: &Replay) -> Value {
         "boxes": bodies.map_or_else(Vec::new, Vec::from),
         "spin": short(replay.scenario.spin_axis().as_slice()),
         "releases": history.releases.iter().filter(|(_, time)| *time <= end).take(LOADS).map(|(load, time)| {
-            json!([Short(*load).to_string(), short(&[*time])[0], load.to_string()])
+            json!([Short(*load).to_string(), time, load.to_string()])
         }).collect::<Vec<_>>(),
     })
 }
@@ -154,7 +154,7 @@ fn frame(replay: &Replay, now: &Frame, outlines: Option<&[Outline; 2]>) -> Value
     let (p, l) = (payload.state().position, stage.state().position);
     // From the common mass centre.
     let positions = [(p - l) * (ml / (mp + ml)), (l - p) * (mp / (mp + ml))];
-    let mut values = vec![*time_s];
+    let mut values = Vec::new();
     for (body, position) in [payload, stage].into_iter().zip(positions) {
         let state = body.state();
         values.extend(position.iter().chain(state.attitude.coords.iter()));
@@ -163,7 +163,8 @@ fn frame(replay: &Replay, now: &Frame, outlines: Option<&[Outline; 2]>) -> Value
     values.extend(payload.inertial_spin_angular_momentum().iter());
     let nutation = replay.history.nutation_deg(payload, replay.scenario.spin_axis());
     let apart = outlines.and_then(|outlines| distance_m(outlines, [payload, stage]));
-    let mut values = short(&values);
+    // Times with all their digits: of a late release, the sixth is longer than the push.
+    let mut values: Vec<Value> = std::iter::once(json!(time_s)).chain(short(&values)).collect();
     values.extend([nutation, apart].map(|x| x.map_or(Value::Null, |x| short(&[x])[0].clone())));
     Value::Array(values)
 }
