@@ -175,11 +175,11 @@ impl Unknowns<'_> {
         self.improve(&mut best, &[again, guess]);
         if self.task.has_valleys() {
             self.improve_evenly(&mut best, &[again, guess]);
-        }
-        if self.task.has_valleys() && self.misses(&best) {
-            let (nearest, cost) = self.evenly().nearest(ANYWHERE, WIDE);
-            if cost < WITHIN_REACH {
-                self.improve_evenly(&mut best, &nearest);
+            if self.misses(&best) {
+                let (nearest, cost) = self.evenly().nearest(ANYWHERE, WIDE);
+                if cost < WITHIN_REACH {
+                    self.improve_evenly(&mut best, &nearest);
+                }
             }
         }
         if self.misses(&best) {

@@ -7,7 +7,7 @@ const PARTS: usize = 32;
 
 /// How many numbers of the same size would have the fourth moment of these about 0 for their second one: all of them if they
 /// are of one size, 1 if one of them is all there is. None if all are 0.
-pub(super) fn effective_number(numbers: impl Iterator<Item = f64>) -> Option<f64> {
+fn effective_number(numbers: impl Iterator<Item = f64>) -> Option<f64> {
     let (mut squares, mut fourths) = (0.0, 0.0);
     for square in numbers.map(|x| x * x) {
         squares += square;

@@ -2,7 +2,7 @@
 
 use gyradius_separation::{MovingBody, Separation, Step};
 
-use super::grid::{TURN, rate};
+use super::grid::{TURN, fastest};
 
 /// Moments of an animation at most: about three megabytes.
 pub(super) const MOST: usize = 10_000;
@@ -81,11 +81,6 @@ impl Film {
     pub(super) fn cut_s(&self) -> Option<f64> {
         self.frames.last().filter(|_| self.is_cut).map(|frame| frame.time_s)
     }
-}
-
-/// The rate of the faster body in a step, at its start or its end, rad/s.
-fn fastest(step: &Step) -> f64 {
-    rate(&step.states_at(step.start_s())).max(rate(&step.states_at(step.end_s())))
 }
 
 /// Until when neither body turns too far from a moment on, s: infinity if it does not in these steps, which have these rates.

@@ -13,9 +13,14 @@ const PUSHING: f64 = 100.0;
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
 /// The rate of the faster of two bodies, rad/s.
-pub(super) fn rate(states: &[BodyState; 2]) -> f64 {
+fn rate(states: &[BodyState; 2]) -> f64 {
     let [payload, stage] = states.map(|state| state.angular_velocity.norm());
     payload.max(stage)
+}
+
+/// The rate of the faster body in a step, at its start or its end, rad/s.
+pub(super) fn fastest(step: &Step) -> f64 {
+    rate(&step.states_at(step.start_s())).max(rate(&step.states_at(step.end_s())))
 }
 
 /// A part of a motion in time, and how long its steps of time are.
@@ -31,10 +36,7 @@ impl Part {
     /// Of the steps that start between two times, s, so many moments at most, about. The last release is at `last`.
     pub(super) fn new((start, end): (f64, f64), steps: &[Step], last: f64, most: f64) -> Self {
         let within = steps.iter().filter(|step| (start..end).contains(&step.start_s()));
-        let fastest = within.map(|step| {
-            rate(&step.states_at(step.start_s())).max(rate(&step.states_at(step.end_s())))
-        });
-        let turn = TURN / fastest.fold(f64::MIN_POSITIVE, f64::max);
+        let turn = TURN / within.map(fastest).fold(f64::MIN_POSITIVE, f64::max);
         let least = (end - start) / most;
         let interval = round_below(f64::min(last / PUSHING, turn).max(least));
         Self { start, interval, is_coarse: interval > turn }
