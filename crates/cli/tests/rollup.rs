@@ -60,7 +60,7 @@ fn the_documented_shapes_are_read() {
             let spelled = shape[..1].to_uppercase() + &shape[1..].replace('_', " ");
             let text = format!("name,mass,Cx,Cy,Cz,shape{heads}\nit,1,0,0,0,{spelled}{values}\n");
             fs::write(shell.path("parts.csv"), text).unwrap();
-            shell.done(&["rollup", "parts.csv"], 0);
+            shell.done(&["rollup", "parts.csv", "--draws", "1000"], 0);
             count += 1;
         }
     }

@@ -245,8 +245,11 @@ fn what_a_shard_does_not_do_binds_nobody() {
 #[test]
 fn blocks_that_were_copied_count_if_they_are_of_the_same_study() {
     let scratch = Scratch::new();
+    fs::write(scratch.path("it.toml"), one_model()).unwrap();
     let study = |out: &str, more: &[&str]| {
-        let all = [&["study", "--runs", "17000", "-q", "--out", out], more].concat();
+        let all =
+            [&["study", "--scenario", "it.toml", "--runs", "17000", "-q", "--out", out], more]
+                .concat();
         assert_eq!(scratch.run(&all).status.code(), Some(0), "{all:?}");
     };
     study("whole", &[]);

@@ -34,24 +34,59 @@ fn is_near(found: f64, expected: f64) -> bool {
     (found / expected - 1.0).abs() < 1e-12
 }
 
-/// Calls with every spelling of every unit of inertia: the unit, what stands before and after it, its size in
-/// SI, and the two readings of one that may be two.
-fn each_inertia_unit(mut call: impl FnMut(&str, (&str, &str), f64, Option<[&str; 2]>)) {
-    let mut count = 0;
+/// A spelling of a unit of inertia.
+struct Spelling {
+    unit: String,
+    /// What stands before and after it.
+    around: (&'static str, &'static str),
+    kg_m2: f64,
+}
+
+impl Spelling {
+    fn after(&self, name: &str) -> String {
+        let ((before, after), unit) = (self.around, &self.unit);
+        format!("{name}{before}{unit}{after}")
+    }
+
+    fn upper(&self) -> Self {
+        Self { unit: upper(&self.unit), ..*self }
+    }
+}
+
+/// All spellings that have one reading, and those that have two.
+fn spellings() -> [Vec<Spelling>; 2] {
+    let [mut clear, mut ambiguous] = [Vec::new(), Vec::new()];
     for (mass, kg) in MASSES {
         for (length, m) in LENGTHS {
             for (between, square) in BETWEEN.iter().flat_map(|b| SQUARES.map(|s| (b, s))) {
                 for around in AROUND {
                     let unit = format!("{mass}{between}{length}{square}");
-                    let two =
+                    let is_ambiguous =
                         matches!((mass, *between, length), ("lb", "", "mm") | ("lbm", "", "m"));
-                    call(&unit, around, kg * m * m, two.then_some(["lb·mm²", "lbm·m²"]));
-                    count += 1;
+                    let of = if is_ambiguous { &mut ambiguous } else { &mut clear };
+                    of.push(Spelling { unit, around, kg_m2: kg * m * m });
                 }
             }
         }
     }
-    assert_eq!(count, 8 * 5 * 10 * 5 * 7);
+    assert_eq!(clear.len() + ambiguous.len(), 8 * 5 * 10 * 5 * 7);
+    [clear, ambiguous]
+}
+
+/// Spellings side by side in one table. Seven stand around each unit, so that all of them come into every column of `N`,
+/// which is not seven.
+fn side_by_side<const N: usize>(spellings: &[Spelling]) -> impl Iterator<Item = [&Spelling; N]> {
+    let beyond = move |i: usize| &spellings[i.min(spellings.len() - 1)];
+    (0..spellings.len()).step_by(N).map(move |first| std::array::from_fn(|i| beyond(first + i)))
+}
+
+/// All spellings of each unit: a table that is checked has one unit for all moments.
+fn of_one_unit(spellings: &[Spelling]) -> impl Iterator<Item = &[Spelling]> {
+    spellings.chunk_by(|a, b| a.kg_m2 == b.kg_m2)
+}
+
+fn names_both_readings(message: &str) -> bool {
+    ["lb·mm²", "lbm·m²"].iter().all(|reading| message.contains(reading))
 }
 
 fn upper(text: &str) -> String {
@@ -62,63 +97,80 @@ fn upper(text: &str) -> String {
 /// `lbm m^2` was read as lb·mm², a millionth of it.
 #[test]
 fn every_unit_of_inertia_is_read_as_it_is_written_in_tables_that_are_checked() {
-    each_inertia_unit(|unit, (before, after), si, two| {
-        let below = format!("ixx,iyy,izz\n{unit},{unit},\n1,1,1\n");
-        let beside = |unit: &str| format!("Ixx{before}{unit}{after},iyy,izz\n1,1,1\n");
-        for table in [beside(unit), beside(&upper(unit)), below] {
-            match (checked(table.as_bytes()), two) {
-                (Ok(file), None) => {
-                    let body = file.bodies().last().unwrap();
-                    let found = body.inertia().unwrap()[(0, 0)];
-                    assert!(file.bodies().len() == 1 && is_near(found, si), "{table}{found}");
-                }
-                (Err(error), Some(readings)) => {
-                    let message = error.to_string();
-                    assert!(message.starts_with("t.csv:1: malformed: column \""), "{message}");
-                    assert!(readings.iter().all(|r| message.contains(r)), "{message}");
-                }
-                (found, _) => panic!("{table}{found:?}"),
+    const NAMES: [&str; 3] = ["Ixx", "iyy", "izz"];
+    let beside = |spellings: [&Spelling; 3]| {
+        let names: [String; 3] = std::array::from_fn(|i| spellings[i].after(NAMES[i]));
+        format!("{}\n1,1,1\n", names.join(","))
+    };
+    let below = |[a, b, c]: [&Spelling; 3]| {
+        format!("ixx,iyy,izz\n{},{},{}\n1,1,1\n", a.unit, b.unit, c.unit)
+    };
+    let [clear, ambiguous] = spellings();
+    for spellings in of_one_unit(&clear).flat_map(side_by_side::<3>) {
+        let [a, b, c] = spellings.map(Spelling::upper);
+        for table in [beside(spellings), beside([&a, &b, &c]), below(spellings)] {
+            let file = checked(table.as_bytes()).unwrap();
+            let found = file.bodies().last().unwrap().inertia().unwrap();
+            assert_eq!(file.bodies().len(), 1, "{table}");
+            for (i, spelling) in spellings.iter().enumerate() {
+                assert!(is_near(found[(i, i)], spelling.kg_m2), "{table}{found}");
             }
         }
-        let large = beside(&unit.to_uppercase());
-        if large.contains("MG") {
-            let error = checked(large.as_bytes()).unwrap_err().to_string();
-            assert!(error.contains("ixx is in") && error.contains("MG"), "{large}{error}");
+        for spelling in spellings {
+            let large = Spelling { unit: spelling.unit.to_uppercase(), ..*spelling };
+            if large.unit.contains("MG") {
+                let table = format!("{},iyy,izz\n1,1,1\n", large.after("Ixx"));
+                let error = checked(table.as_bytes()).unwrap_err().to_string();
+                assert!(error.contains("ixx is in") && error.contains("MG"), "{table}{error}");
+            }
         }
-    });
+    }
+    for spelling in &ambiguous {
+        for table in [beside([spelling; 3]), beside([&spelling.upper(); 3]), below([spelling; 3])] {
+            let message = checked(table.as_bytes()).unwrap_err().to_string();
+            assert!(message.starts_with("t.csv:1: malformed: column \""), "{message}");
+            assert!(names_both_readings(&message), "{message}");
+        }
+    }
 }
 
 #[test]
 fn every_unit_of_inertia_is_read_as_it_is_written_in_lists_of_parts() {
-    each_inertia_unit(|unit, (before, after), si, two| {
-        let of = |name: &str| format!("{name}{before}{unit}{after}");
-        let inertia = ["Ixx", "iyy", "izz", "sigma_ixx", "Iyy sigma", "sigma_products"].map(of);
-        let table = format!(
-            "name,mass,cx,cy,cz,{}\n\
-             a,1,0,0,0,1,1,1,1,1,1\n",
-            inertia.join(",")
-        );
-        match (PartsTable::read(table.as_bytes(), None), two) {
-            (Ok(read), None) => {
-                let part = read.rows()[0].numbers().unwrap();
-                assert!(is_near(part.inertia().entries()[0], si), "{table}{part:?}");
-                let [.., i11, i22, i33, i12, i13, i23] = part.deviations();
-                let sigma = [i11, i22, i12, i13, i23];
-                assert!(sigma.iter().all(|s| is_near(*s, si)) && i33 == 0.0, "{table}{part:?}");
-                assert!(read.passed_over().is_empty(), "{table}");
-            }
-            (Err(error), Some(readings)) => {
-                let message = error.to_string();
-                assert!(message.starts_with("line 1: column \"Ixx"), "{message}");
-                assert!(readings.iter().all(|r| message.contains(r)), "{message}");
-            }
-            (found, _) => panic!("{table}{found:?}"),
+    const NAMES: [&str; 6] = ["Ixx", "iyy", "izz", "sigma_ixx", "Iyy sigma", "sigma_products"];
+    let parts = |spellings: [&Spelling; 6]| {
+        let names: [String; 6] = std::array::from_fn(|i| spellings[i].after(NAMES[i]));
+        format!("name,mass,cx,cy,cz,{}\na,1,0,0,0,1,1,1,1,1,1\n", names.join(","))
+    };
+    let ten_columns = |spellings: [&Spelling; 3]| {
+        let names: [String; 3] = std::array::from_fn(|i| spellings[i].after(NAMES[i]));
+        format!("mass,cx,cy,cz,{}\n1,0,0,0,1,1,1\n", names.join(","))
+    };
+    let [clear, ambiguous] = spellings();
+    for spellings in side_by_side::<6>(&clear) {
+        let table = parts(spellings);
+        let read = PartsTable::read(table.as_bytes(), None).unwrap();
+        let part = read.rows()[0].numbers().unwrap();
+        let [.., i11, i22, i33, i12, i13, i23] = part.deviations();
+        let [xx, yy, zz, ..] = part.inertia().entries();
+        assert!(i33 == 0.0 && i12 == i13 && i13 == i23, "{table}{part:?}");
+        for (found, spelling) in [xx, yy, zz, i11, i22, i12].into_iter().zip(spellings) {
+            assert!(is_near(found, spelling.kg_m2), "{table}{part:?}");
         }
-        let table = format!("mass,cx,cy,cz,Ixx{before}{unit}{after},iyy,izz\n1,0,0,0,1,1,1\n");
-        let ten = ten(table.as_bytes());
-        let found = ten.map(|ten| ten.rows()[0].values().unwrap()[4]);
-        assert!(found.is_ok_and(|found| is_near(found, si)) == two.is_none(), "{table}");
-    });
+        assert!(read.passed_over().is_empty(), "{table}");
+    }
+    for spellings in of_one_unit(&clear).flat_map(side_by_side::<3>) {
+        let table = ten_columns(spellings);
+        let found = ten(table.as_bytes()).unwrap();
+        let found = &found.rows()[0].values().unwrap()[4..7];
+        assert!(found.iter().zip(spellings).all(|(x, s)| is_near(*x, s.kg_m2)), "{table}");
+    }
+    for spelling in &ambiguous {
+        let message = PartsTable::read(parts([spelling; 6]).as_bytes(), None).unwrap_err();
+        let message = message.to_string();
+        assert!(message.starts_with("line 1: column \"Ixx"), "{message}");
+        assert!(names_both_readings(&message), "{message}");
+        assert!(ten(ten_columns([spelling; 3]).as_bytes()).is_err());
+    }
 }
 
 #[test]

@@ -249,7 +249,8 @@ fn unit_scales(estimate: &TenEstimate) -> Ten {
 fn every_estimate_has_a_law_or_an_error() {
     let mut rng = ChaCha8Rng::seed_from_u64(5);
     let mut worst = [0f64; 2];
-    for case in 0..33 {
+    // Each form with each rank.
+    for case in 0..22 {
         let form = forms()[case % 2];
         let body = random_body(&mut rng);
         let rank = case % 11;
