@@ -11,13 +11,12 @@ use crate::{
 };
 
 pub(crate) fn read(text: &Text, default: Products) -> Result<Vec<FileBody>, Refusal> {
-    let unclosed = |at| text.malformed(at, "a quotation mark is not closed");
     let (header, mut rows) = find_header(text)?;
     let products = stated_products(text)?.unwrap_or(default);
 
     let mut bodies = Vec::new();
     while let Some(row) = rows.next() {
-        let row = row.map_err(unclosed)?;
+        let row = row.map_err(|error| error.of(text))?;
         let line = text.line(row.first().map_or(0, |field| field.start));
         if bodies.len() == MAX_BODIES {
             return Err(Refusal { line: Some(line), problem: FileProblem::TooManyBodies });

@@ -2,7 +2,42 @@
 //!
 //! Read by hand, because a copy that changes single numbers needs the places.
 
-use crate::products_comment::states_products;
+use crate::{error::Refusal, products_comment::states_products, text::Text};
+
+/// Why quotation marks do not hold a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub(crate) enum QuoteError {
+    /// The mark at this offset is never closed.
+    #[error("a quotation mark is not closed")]
+    Unclosed {
+        /// Where the mark stands.
+        at: usize,
+    },
+    /// Something stands between the mark that closes a cell and the separator.
+    #[error(
+        "something stands behind the quotation mark that closes cell {cell}: a separator or the end of the line must follow \
+         there, and a quotation mark inside a cell must be written twice"
+    )]
+    Trailing {
+        /// Where the cell begins.
+        at: usize,
+        /// Which cell of the row it is, from 1.
+        cell: usize,
+    },
+}
+
+impl QuoteError {
+    /// The refusal of the text in which it is.
+    pub(crate) fn of(self, text: &Text) -> Refusal {
+        text.malformed(self.at(), self)
+    }
+
+    /// Where the cell begins.
+    pub(crate) fn at(self) -> usize {
+        let (Self::Unclosed { at } | Self::Trailing { at, .. }) = self;
+        at
+    }
+}
 
 /// Where a field stands, its quotes not counted.
 #[derive(Clone, Copy, Debug)]
@@ -41,9 +76,9 @@ impl<'a> Rows<'a> {
         Self { text, at, separator: separator(line, row) as u8 }
     }
 
-    /// The fields of the next row that is neither blank nor a comment, or the offset of a quote
-    /// that is never closed. Spreadsheets write separators alone for a blank row.
-    pub(crate) fn next(&mut self) -> Option<Result<Vec<Field>, usize>> {
+    /// The fields of the next row that is neither blank nor a comment, or why its quotation marks hold
+    /// no cell. Spreadsheets write separators alone for a blank row.
+    pub(crate) fn next(&mut self) -> Option<Result<Vec<Field>, QuoteError>> {
         loop {
             let rest = &self.text[self.at..];
             let line = rest.split('\n').next()?;
@@ -62,7 +97,7 @@ impl<'a> Rows<'a> {
     }
 
     /// The fields of the row that begins here.
-    pub(crate) fn row(&mut self) -> Result<Vec<Field>, usize> {
+    pub(crate) fn row(&mut self) -> Result<Vec<Field>, QuoteError> {
         let bytes = self.text.as_bytes();
         let mut fields = Vec::new();
         loop {
@@ -78,13 +113,17 @@ impl<'a> Rows<'a> {
                         (Some(b'"'), Some(b'"')) => i += 2,
                         (Some(b'"'), _) => break,
                         (Some(_), _) => i += 1,
-                        (None, _) => return Err(self.at),
+                        (None, _) => return Err(QuoteError::Unclosed { at: self.at }),
                     }
                 }
                 end = i;
                 self.at = i + 1;
                 while !self.at_end_of_field() {
                     self.at += 1;
+                }
+                // Whoever wrote `"12" lb` means other than 12, or a quotation mark that belongs to the cell.
+                if !self.text[i + 1..self.at].trim().is_empty() {
+                    return Err(QuoteError::Trailing { at: start - 1, cell: fields.len() + 1 });
                 }
             } else {
                 start = self.at;

@@ -88,7 +88,8 @@ impl TenMomentsFile {
         let mut numbers: Vec<[f64; 10]> = Vec::new();
         let mut header: Option<Columns> = None;
         while let Some(fields) = rows.next() {
-            let fields = fields.map_err(|_| malformed("a quotation mark is not closed"))?;
+            let fields = fields
+                .map_err(|error| malformed(&format!("line {}: {error}", text.line(error.at()))))?;
             let cell = |at: &Field| at.of(text.as_str()).trim();
             let read: Vec<Option<f64>> = fields.iter().map(|f| cell(f).parse().ok()).collect();
             if numbers.is_empty() && header.is_none() && read.iter().all(Option::is_none) {

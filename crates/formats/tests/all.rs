@@ -6,6 +6,7 @@ mod encodings;
 mod headings;
 mod mjcf_geoms;
 mod places;
+mod quotes;
 mod robots;
 mod samples;
 mod slips;

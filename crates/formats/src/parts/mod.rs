@@ -336,8 +336,7 @@ fn with_units(headings: &[String], below: &[String]) -> Result<Option<Vec<String
 }
 
 fn next(text: &Text, rows: &mut Rows<'_>) -> Result<Option<Vec<Field>>, PartsError> {
-    let unclosed = |at| PartsError::from(text.malformed(at, "a quotation mark is not closed"));
-    rows.next().transpose().map_err(unclosed)
+    rows.next().transpose().map_err(|error| error.of(text).into())
 }
 
 fn line_of(text: &Text, fields: &[Field]) -> usize {
