@@ -5,6 +5,7 @@ mod dressings;
 mod encodings;
 mod headings;
 mod mjcf_geoms;
+mod not_known;
 mod places;
 mod quotes;
 mod robots;

@@ -119,7 +119,7 @@ fn because(what: Unread) -> &'static str {
     match what {
         Unread::Count => {
             "a row is one part, and must have mass, mass centre and inertia of all of them together, or stand as many times as \
-             there are parts, each with its own mass centre; the column must be empty or 1"
+             there are parts, each with its own mass centre; the column must be empty, 1 or one"
         }
         Unread::Turn => {
             "angles are not read, for their order is not known: a part that is turned must have the quaternion of its attitude in \
@@ -185,6 +185,15 @@ pub enum PartsProblem {
         heading: String,
         /// The cell.
         value: String,
+    },
+    /// A cell that says it is not known, in a column where an empty one stands for a number.
+    #[error(
+        "column {heading:?} says \"NA\", and what is not known is no number: the cell must hold a number, or be empty, which stands \
+         for none: for no deviation, a product of zero, axes that are not turned, or one part"
+    )]
+    NotKnown {
+        /// The heading.
+        heading: String,
     },
     /// A unit in the row below the header, of a column that cannot have it.
     #[error("column {heading:?} has the unit {unit:?} below it: it must be {allowed}")]

@@ -22,7 +22,7 @@ use crate::{
     units::{Unit, squeezed},
 };
 use heading::{Column, Heading};
-use row::Cells;
+use row::{Cells, NOT_KNOWN};
 
 /// The assembly of a list without assemblies.
 const WHOLE: &str = "whole";
@@ -197,7 +197,7 @@ impl PartsTable {
                     Refusal { line: Some(line), problem: FileProblem::TooManyBodies }.into()
                 );
             }
-            let cells: Vec<String> = fields.iter().map(|field| cell(&text, field)).collect();
+            let cells: Vec<String> = fields.iter().map(|field| written(&text, field)).collect();
             let row =
                 Cells { columns: &columns, headings: &headings, cells: &cells, products }.row(line);
             found.push(row.map_err(|error| error.beside(&passed_over))?);
@@ -343,10 +343,15 @@ fn line_of(text: &Text, fields: &[Field]) -> usize {
     text.line(fields.first().map_or(0, |field| field.start))
 }
 
-/// What a field holds, without blanks around it; nothing where R writes that nothing is there.
+/// What a field holds, without blanks around it.
+fn written(text: &Text, field: &Field) -> String {
+    field.of(text.as_str()).trim().replace("\"\"", "\"")
+}
+
+/// The same of a heading, a unit or a name: nothing where R writes that nothing is there.
 fn cell(text: &Text, field: &Field) -> String {
-    let plain = field.of(text.as_str()).trim().replace("\"\"", "\"");
-    if plain == "NA" { String::new() } else { plain }
+    let plain = written(text, field);
+    if plain == NOT_KNOWN { String::new() } else { plain }
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use serde_json::{Map, Value};
 
 use super::error::{PartsError, PartsFile, PartsProblem};
 use super::heading::{self, Column, GYRATION, Group, Heading, Scale, VALUES};
+use super::unread::Unread;
 use crate::{
     FileBodyError, Products,
     body::{Number, shortened},
@@ -13,6 +14,13 @@ use crate::{
 
 /// How far the four components of an attitude may be from a unit quaternion.
 const UNIT: f64 = 1e-3;
+
+/// What R writes where nothing is known. It is an empty cell wherever that stands for no number.
+pub(super) const NOT_KNOWN: &str = "NA";
+
+fn is_blank(cell: &str) -> bool {
+    cell.is_empty() || cell == NOT_KNOWN
+}
 
 /// A row of a list: a part with its numbers, or an assembly without.
 #[derive(Clone, Debug, PartialEq)]
@@ -145,7 +153,7 @@ impl Cells<'_> {
 
     /// Cells that are not empty, under the columns of a kind.
     fn given<T>(&self, of: impl Fn(&Heading) -> Option<T>) -> impl Iterator<Item = (T, &str)> {
-        let pairs = self.columns.iter().zip(self.cells).filter(|(_, cell)| !cell.is_empty());
+        let pairs = self.columns.iter().zip(self.cells).filter(|(_, cell)| !is_blank(cell));
         pairs.filter_map(move |(heading, cell)| Some((of(heading)?, cell.as_str())))
     }
 
@@ -153,13 +161,45 @@ impl Cells<'_> {
     fn unread(&self) -> Option<PartsProblem> {
         let cells = self.columns.iter().zip(self.headings).zip(self.cells);
         let problem = |((column, heading), cell): ((&Heading, &String), &String)| match *column {
-            Heading::Unread(what) if !cell.is_empty() && !what.is_neutral(cell) => {
+            Heading::Unread(what) if !is_blank(cell) && !what.is_neutral(cell) => {
                 let (heading, value) = (shortened(heading), shortened(cell));
                 Some(PartsProblem::Unread { what, heading, value })
             }
             _ => None,
         };
         cells.filter_map(problem).next()
+    }
+
+    /// The first cell of a part that is not known and would be read as a number: as zero, as the part's own axes, or as one part.
+    fn not_known(&self, is_point: bool, has_six: bool) -> Option<PartsProblem> {
+        let is_number = |column: &Heading| match column {
+            // What is said of the inertia of a point has no meaning.
+            Heading::Column(Column::Deviation(Group(first, _), _)) => *first < 4 || !is_point,
+            // Products that are empty are zero; beside a shape or radii, none of the six is read.
+            Heading::Column(Column::Value(i, _)) => *i >= 7 && has_six,
+            Heading::Column(Column::Attitude(_)) | Heading::Unread(Unread::Count) => true,
+            Heading::Column(
+                Column::Name
+                | Column::Parent
+                | Column::Products
+                | Column::Point
+                | Column::Shape
+                | Column::Follows
+                | Column::Gyration(..),
+            )
+            | Heading::Size(..)
+            | Heading::SizeUnit(..)
+            | Heading::Unit(..)
+            | Heading::Product
+            | Heading::Signed
+            | Heading::NoDeviation
+            | Heading::SizeDeviation
+            | Heading::Unread(Unread::Turn | Unread::Growth | Unread::Unit)
+            | Heading::Other => false,
+        };
+        let mut cells = self.columns.iter().zip(self.headings).zip(self.cells);
+        let found = cells.find(|((column, _), cell)| *cell == NOT_KNOWN && is_number(column));
+        found.map(|((_, heading), _)| PartsProblem::NotKnown { heading: shortened(heading) })
     }
 
     fn text(&self, wanted: Column) -> Option<&str> {
@@ -210,6 +250,10 @@ impl Cells<'_> {
         let [mass_kg, x, y, z] = std::array::from_fn(|i| values[i].unwrap_or_default());
         let shape = self.shape()?;
         let radii = self.gyration(mass_kg)?;
+        let has_six = shape.is_none() && radii.is_none();
+        if let Some(problem) = self.not_known(matches!(shape, Some(None)), has_six) {
+            return Err(problem);
+        }
         let six = self.inertia(shape, radii, mass_kg, std::array::from_fn(|e| values[4 + e]))?;
         let [i11, i22, i33, i12, i13, i23] = six;
         let inertia = InertiaMatrix::from_entries([i11, i22, i33], [i12, i13, i23])

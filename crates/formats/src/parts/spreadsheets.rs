@@ -105,7 +105,12 @@ fn columns_that_would_change_a_row_are_refused() {
         ("growth", "0 %", "1.1", "no growth allowance"),
         ("MGA %", "0", "15%", "no growth allowance"),
         ("mass margin [%]", "AIAA", "10", "no growth allowance"),
-        ("Total Qty", "each", "3 off", "a row is one part"),
+        ("Total Qty", "One", "3 off", "a row is one part"),
+        ("qty", "1x", "four", "a row is one part"),
+        ("count", "× 1", "each", "a row is one part"),
+        ("No. off", "1", "a pair", "a row is one part"),
+        ("pcs", "1", "½", "a row is one part"),
+        ("Menge", "1", "-", "a row is one part"),
         ("q1", "0", "0.7", "angles are not read"),
         ("unit", "kg", "g", "must stand in its heading"),
     ] {

@@ -135,8 +135,11 @@ impl Unread {
         let has_digit = cell.contains(|c: char| c.is_ascii_digit());
         let of = |word: &str| word.trim_end_matches(['%', '°']).trim().parse::<f64>().ok();
         match self {
-            // Words alone, as `each` or `-`, are no count.
-            Self::Count => !has_digit || of(cell.trim_matches(['x', 'X', '×', ' '])) == Some(1.0),
+            // Any other word may be a number: `four`, `pair`, `½`.
+            Self::Count => {
+                cell.eq_ignore_ascii_case("one")
+                    || of(cell.trim_matches(['x', 'X', '×', ' '])) == Some(1.0)
+            }
             Self::Turn => {
                 let words = cell.split([' ', ',', ';', '[', ']', '(', ')']);
                 !has_digit
