@@ -81,30 +81,32 @@ pub(crate) fn toml(text: &Text, products: Products) -> Result<(Vec<FileBody>, Ga
     let table = table.into_inner();
     let all = all_in_toml(&table);
     let value = DeValue::Table(table);
-    bodies(text, &from_toml(&value, &span, DEPTH), &all, products)
+    bodies(text, &from_toml(source, &value, &span, DEPTH), &all, products)
 }
 
-fn from_toml<'a>(value: &DeValue<'a>, span: &Range<usize>, depth: usize) -> Item<'a> {
+fn from_toml<'a>(source: &str, value: &DeValue<'a>, span: &Range<usize>, depth: usize) -> Item<'a> {
     let value = match value {
         DeValue::Float(float) => Value::Number(float.as_str().to_owned().into(), span.end),
         DeValue::Integer(integer) => {
             // Hexadecimal integers are numbers too, if hardly inertias.
             let digits = integer.as_str();
-            let decimal = match integer.radix() {
-                10 => digits.to_owned(),
-                radix => i128::from_str_radix(digits, radix).unwrap_or_default().to_string(),
+            let decimal = match (integer.radix(), i128::from_str_radix(digits, integer.radix())) {
+                (10, _) => digits.to_owned(),
+                (_, Ok(value)) => value.to_string(),
+                // Too long: as it is written, which is refused as a number.
+                (_, Err(_)) => source.get(span.clone()).unwrap_or(digits).to_owned(),
             };
             Value::Number(decimal.into(), span.end)
         }
         DeValue::String(text) => Value::Text(text.to_string()),
         DeValue::Array(items) if depth > 0 => Value::List(
-            items.iter().map(|i| from_toml(i.get_ref(), &i.span(), depth - 1)).collect(),
+            items.iter().map(|i| from_toml(source, i.get_ref(), &i.span(), depth - 1)).collect(),
         ),
         DeValue::Table(entries) if depth > 0 => {
             let mut entries: Vec<_> = entries
                 .iter()
                 .map(|(key, item)| {
-                    let mut entry = from_toml(item.get_ref(), &item.span(), depth - 1);
+                    let mut entry = from_toml(source, item.get_ref(), &item.span(), depth - 1);
                     entry.start = start_of(item.get_ref(), &key.span(), &item.span());
                     (key.get_ref().to_string(), entry)
                 })

@@ -201,6 +201,8 @@ fn hint(value: &str) -> &'static str {
     let has_one = value.matches(',').count() == 1 && !value.contains('.');
     if has_one && value.replace(',', ".").parse::<f64>().is_ok() {
         ": decimal commas are not read, and a point must stand there"
+    } else if ["0x", "0o", "0b"].iter().any(|prefix| value.starts_with(prefix)) {
+        " that is read here: it must have decimal digits"
     } else {
         ""
     }

@@ -264,3 +264,45 @@ fn an_origin_is_a_pose_in_the_first_version_of_sdf_alone() {
         }
     }
 }
+
+/// Of 33 hexadecimal digits on, an integer was 0.
+#[test]
+fn an_integer_that_is_too_long_is_refused() {
+    let body = |mass: &str, entry: &str| {
+        let text = format!(
+            "[a]\nmass_kg = {mass}\ninertia_kg_m2 = [[{entry}, 0, 0], [0, 1, 0], [0, 0, 1]]\n"
+        );
+        parse("a.toml", &text).bodies()[0].clone()
+    };
+    for (prefix, base, digit) in [("0x", 16_f64, "1"), ("0o", 8.0, "1"), ("0b", 2.0, "1")] {
+        for zeros in [0, 1, 7, 20, 31, 32, 40, 60, 130, 300] {
+            let written = format!("{prefix}{digit}{}", "0".repeat(zeros));
+            let expected = base.powi(i32::try_from(zeros).unwrap());
+            let fits = expected < 2_f64.powi(127);
+            for (body, field) in
+                [(body(&written, "1"), "mass_kg"), (body("1", &written), "inertia_kg_m2")]
+            {
+                match body.inertia() {
+                    Ok(inertia) => {
+                        assert!(fits, "{written}");
+                        let found = if field == "mass_kg" {
+                            body.mass_kg().unwrap()
+                        } else {
+                            inertia[(0, 0)]
+                        };
+                        assert_eq!(found, expected, "{written}");
+                    }
+                    Err(error) => {
+                        let error = error.to_string();
+                        assert!(
+                            !fits && error.starts_with(&format!("{field} = \"{prefix}1")),
+                            "{error}"
+                        );
+                        assert!(error.ends_with("it must have decimal digits"), "{error}");
+                    }
+                }
+            }
+        }
+    }
+    assert_eq!(body("0xf_f", "1").mass_kg(), Some(255.0));
+}
