@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 mod dressings;
+mod edges;
 mod encodings;
 mod headings;
 mod mjcf_geoms;

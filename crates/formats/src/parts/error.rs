@@ -272,6 +272,19 @@ pub enum PartsProblem {
         /// What is allowed.
         allowed: &'static str,
     },
+    /// An edge stands twice, as if the child were there twice.
+    #[error(
+        "{child:?} belongs to {parent:?} in line {first} already: a row is one part, and more of them must stand in the list \
+         under names of their own, each with its own mass centre"
+    )]
+    EdgeTwice {
+        /// The row.
+        child: String,
+        /// What it belongs to.
+        parent: String,
+        /// The line that says it first.
+        first: usize,
+    },
     /// An edge gives a second parent.
     #[error("{child:?} belongs to {first:?} and to {second:?}: it must belong to one of them")]
     Parents {

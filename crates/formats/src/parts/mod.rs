@@ -68,17 +68,22 @@ impl PartsTable {
     }
 
     /// The same with a second table, of the columns `child` and `parent`, that says what belongs to what. What stands in it
-    /// alone is an assembly.
+    /// alone is an assembly. Its other columns are among those that are [passed over](Self::passed_over).
     ///
     /// # Errors
-    /// As [`read`](Self::read), or something belongs to two.
+    /// As [`read`](Self::read), or something belongs to two, or an edge stands twice.
     pub fn with_edges(
         bytes: &[u8],
         edges: &[u8],
         products: Option<Products>,
     ) -> Result<Self, PartsError> {
         let mut table = Self::rows_of(bytes, products)?;
-        let edges = edges_of(edges).map_err(PartsError::in_edges)?;
+        let Edges { edges, passed_over } = Edges::of(edges).map_err(PartsError::in_edges)?;
+        for heading in passed_over {
+            if !table.passed_over.contains(&heading) {
+                table.passed_over.push(heading);
+            }
+        }
         let mut places: BTreeMap<String, usize> =
             table.rows.iter().enumerate().map(|(i, row)| (row.name().to_owned(), i)).collect();
         for (line, child, parent) in edges {
@@ -226,38 +231,73 @@ impl Raw {
     }
 }
 
-/// Line, child and parent of each row.
-fn edges_of(bytes: &[u8]) -> Result<Vec<(usize, String, String)>, PartsError> {
-    let text = Text::new(bytes, true)?;
-    let mut rows = Rows::new(text.as_str());
-    let Some(first) = next(&text, &mut rows)? else {
-        return Err(Refusal::from(FileProblem::Empty).into());
-    };
-    let headings: Vec<String> =
-        first.iter().map(|field| cell(&text, field).to_lowercase()).collect();
-    let place = |column: &'static str| {
-        let missing =
-            || PartsError::new(line_of(&text, &first), None, PartsProblem::NoColumn { column });
-        headings.iter().position(|heading| heading == column).ok_or_else(missing)
-    };
-    let places = [("child", place("child")?), ("parent", place("parent")?)];
-    let mut edges = Vec::new();
-    while let Some(fields) = next(&text, &mut rows)? {
-        let line = line_of(&text, &fields);
-        let (found, allowed) = (fields.len(), headings.len());
-        if found != allowed {
-            let problem = FileBodyError::Count { field: "the row", found, allowed }.into();
-            return Err(PartsError::new(line, None, problem));
-        }
-        let of = |(field, place): (&'static str, usize)| {
-            let found = fields.get(place).map(|field| cell(&text, field));
-            let missing = FileBodyError::Missing { field };
-            let missing = || PartsError::new(line, None, PartsProblem::Number(missing));
-            found.filter(|name| !name.is_empty()).ok_or_else(missing)
+/// A table of what belongs to what.
+struct Edges {
+    /// Line, child and parent of each row.
+    edges: Vec<(usize, String, String)>,
+    passed_over: Vec<String>,
+}
+
+impl Edges {
+    fn of(bytes: &[u8]) -> Result<Self, PartsError> {
+        let text = Text::new(bytes, true)?;
+        let mut rows = Rows::new(text.as_str());
+        let Some(first) = next(&text, &mut rows)? else {
+            return Err(Refusal::from(FileProblem::Empty).into());
         };
-        edges.push((line, of(places[0])?, of(places[1])?));
+        let headings: Vec<String> = first.iter().map(|field| cell(&text, field)).collect();
+        let place = |column: &'static str| {
+            let refused = |problem| PartsError::new(line_of(&text, &first), None, problem);
+            let is_it = |(at, heading): (usize, &String)| {
+                (heading.to_lowercase() == column).then_some((at, shortened(heading)))
+            };
+            let mut found = headings.iter().enumerate().filter_map(is_it);
+            match (found.next(), found.next()) {
+                (None, _) => Err(refused(PartsProblem::NoColumn { column })),
+                (Some((_, first)), Some((_, second))) => {
+                    Err(refused(PartsProblem::Columns { first, second }))
+                }
+                (Some((at, _)), None) => Ok(at),
+            }
+        };
+        let places = [("child", place("child")?), ("parent", place("parent")?)];
+        let is_other = |(at, heading): (usize, &String)| {
+            places.iter().all(|(_, place)| *place != at).then(|| shortened(heading))
+        };
+        let passed_over = headings.iter().enumerate().filter_map(is_other).collect();
+        // Masses and the like are not read from here, whatever they say.
+        let column = |heading: &String| Unread::of(heading).map_or(Heading::Other, Heading::Unread);
+        let columns: Vec<Heading> = headings.iter().map(column).collect();
+        let mut edges = Vec::new();
+        let mut lines: BTreeMap<(String, String), usize> = BTreeMap::new();
+        while let Some(fields) = next(&text, &mut rows)? {
+            let line = line_of(&text, &fields);
+            let refused = |problem| PartsError::new(line, None, problem);
+            let (found, allowed) = (fields.len(), headings.len());
+            if found != allowed {
+                let problem = FileBodyError::Count { field: "the row", found, allowed }.into();
+                return Err(refused(problem));
+            }
+            let of = |(field, place): (&'static str, usize)| {
+                let found = fields.get(place).map(|field| cell(&text, field));
+                let missing = || refused(FileBodyError::Missing { field }.into());
+                found.filter(|name| !name.is_empty()).ok_or_else(missing)
+            };
+            let (child, parent) = (of(places[0])?, of(places[1])?);
+            // A child that stands four times, or has a 4 beside it, is meant to be there four times.
+            let cells: Vec<String> = fields.iter().map(|field| written(&text, field)).collect();
+            let row =
+                Cells { columns: &columns, headings: &headings, cells: &cells, products: None };
+            if let Some(problem) = row.unread().or_else(|| row.not_known(false, false)) {
+                return Err(PartsError::new(line, Some(&child), problem));
+            }
+            if let Some(first) = lines.insert((child.clone(), parent.clone()), line) {
+                return Err(refused(PartsProblem::EdgeTwice { child, parent, first }));
+            }
+            edges.push((line, child, parent));
+        }
+        Ok(Self { edges, passed_over })
     }
-    Ok(edges)
 }
 
 /// Line and headings of the header, which may stand below titles and have the units in a row below it, and the rows below both.

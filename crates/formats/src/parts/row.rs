@@ -158,7 +158,7 @@ impl Cells<'_> {
     }
 
     /// The first cell that would change the numbers of the row, and is not read.
-    fn unread(&self) -> Option<PartsProblem> {
+    pub(super) fn unread(&self) -> Option<PartsProblem> {
         let cells = self.columns.iter().zip(self.headings).zip(self.cells);
         let problem = |((column, heading), cell): ((&Heading, &String), &String)| match *column {
             Heading::Unread(what) if !is_blank(cell) && !what.is_neutral(cell) => {
@@ -171,7 +171,7 @@ impl Cells<'_> {
     }
 
     /// The first cell of a part that is not known and would be read as a number: as zero, as the part's own axes, or as one part.
-    fn not_known(&self, is_point: bool, has_six: bool) -> Option<PartsProblem> {
+    pub(super) fn not_known(&self, is_point: bool, has_six: bool) -> Option<PartsProblem> {
         let is_number = |column: &Heading| match column {
             // What is said of the inertia of a point has no meaning.
             Heading::Column(Column::Deviation(Group(first, _), _)) => *first < 4 || !is_point,
