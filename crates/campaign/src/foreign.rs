@@ -57,6 +57,8 @@ enum Form {
     },
 }
 
+const NOT_REGULAR: &str = "it is not a regular file";
+
 /// The numbers of some consecutive rows: of each column, one for each row, none where a cell is empty.
 pub type Columns = [Vec<Option<f64>>];
 
@@ -76,21 +78,30 @@ impl ForeignTable {
             let (mut files, mut folders) = (Vec::new(), Vec::new());
             for entry in fs::read_dir(path).map_err(unread)? {
                 let there = entry.map_err(unread)?.path();
-                if there.is_dir() && !is_hidden(&there) {
+                if is_hidden(&there) {
+                    continue;
+                }
+                // What cannot be looked at, such as a link to a disk that is away, may be a table, or a folder of tables.
+                let found = fs::metadata(&there);
+                let found = found.map_err(|error| unread_at(&there, error.to_string()))?;
+                if found.is_dir() {
                     folders.push(there);
-                } else if is_parquet(&there) {
+                } else if has_parquet_name(&there) {
+                    if !found.is_file() {
+                        return Err(unread_at(&there, NOT_REGULAR.to_owned()));
+                    }
                     files.push(there);
                 }
             }
             files.sort();
             folders.sort();
-            if !files.is_empty()
-                && let Some(folder) = folders.iter().find(|folder| holds_parquet(folder))
-            {
-                let below = folder.file_name().unwrap_or_default().display();
-                return Err(failed(format!(
-                    "beside its files it has the folder {below} with Parquet files, which would not be read: judge one folder at a time, or put all files into one"
-                )));
+            for folder in folders.iter().filter(|_| !files.is_empty()) {
+                if holds_parquet(folder)? {
+                    let below = folder.file_name().unwrap_or_default().display();
+                    return Err(failed(format!(
+                        "beside its files it has the folder {below} with Parquet files, which would not be read: judge one folder at a time, or put all files into one"
+                    )));
+                }
             }
             let none = || {
                 let problem = "it has no .parquet file; the run tables of a study are in runs/ below its folder, a folder for \
@@ -103,7 +114,7 @@ impl ForeignTable {
         }
         if !found.is_file() {
             // A pipe has an end only once, and is scanned more often.
-            return Err(failed("it is not a regular file".to_owned()));
+            return Err(failed(NOT_REGULAR.to_owned()));
         }
         let files = vec![path.to_owned()];
         let mut start = [0; PARQUET.len()];
@@ -288,19 +299,28 @@ fn has_parquet_name(path: &Path) -> bool {
     is("parquet") || is("pq")
 }
 
-/// Whether there is a file that is called so. What is hidden is of programs, such as copies of a file that is being written.
-fn is_parquet(path: &Path) -> bool {
-    has_parquet_name(path) && !is_hidden(path) && path.is_file()
-}
-
+/// What is hidden is of programs, such as copies of a file that is being written.
 fn is_hidden(path: &Path) -> bool {
     path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."))
 }
 
-/// Whether a folder has such files, at any depth. What cannot be read has none.
-fn holds_parquet(folder: &Path) -> bool {
-    let mut entries = walkdir::WalkDir::new(folder).into_iter().filter_map(Result::ok);
-    entries.any(|entry| is_parquet(entry.path()))
+/// Whether a folder has Parquet files, at any depth.
+fn holds_parquet(folder: &Path) -> Result<bool, ForeignError> {
+    for entry in walkdir::WalkDir::new(folder) {
+        let entry = entry.map_err(|error| {
+            let path = error.path().unwrap_or(folder).to_owned();
+            unread_at(&path, io::Error::from(error).to_string())
+        })?;
+        if !entry.file_type().is_dir() && has_parquet_name(entry.path()) && !is_hidden(entry.path())
+        {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+fn unread_at(path: &Path, problem: String) -> ForeignError {
+    ForeignError { path: path.to_owned(), problem }
 }
 
 /// Where columns are among those that there are.

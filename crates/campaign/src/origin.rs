@@ -66,7 +66,8 @@ impl Origin {
         let is_same = |named: &&Path| fs::canonicalize(named).is_ok_and(|named| named == folder);
         let folder = named.filter(is_same).unwrap_or(folder);
         let manifest = folder.join(MANIFEST);
-        if !manifest.exists() {
+        // Of one that cannot be looked at, what it says is not known.
+        if fs::symlink_metadata(&manifest).is_err_and(|e| e.kind() == io::ErrorKind::NotFound) {
             return Ok(None);
         }
         let read = Manifest::read(folder).map_err(|error| {

@@ -247,6 +247,58 @@ fn a_folder_is_all_its_files() {
     );
 }
 
+/// A table that cannot be reached was passed over, and the others were judged without a word.
+#[cfg(unix)]
+#[test]
+fn what_cannot_be_reached_is_refused_and_never_passed_over() {
+    use std::os::unix::fs::symlink;
+    let scratch = scratch();
+    let folder = scratch.path().join("runs");
+    fs::create_dir(&folder).unwrap();
+    let table = |path: &std::path::Path| {
+        let mut table = Table::new("m", 0, vec![Column::number("x", "1", "a number")]).unwrap();
+        table.push(None, [Cell::Number(1.0)]).unwrap();
+        table.write_parquet(fs::File::create(path).unwrap()).unwrap();
+    };
+    table(&folder.join("a.parquet"));
+    let elsewhere = scratch.path().join("elsewhere.parquet");
+    table(&elsewhere);
+    let link = folder.join("b.parquet");
+    symlink(&elsewhere, &link).unwrap();
+    let rows = || {
+        let mut rows = 0;
+        let table = ForeignTable::open(&folder)?;
+        table.scan(&["x".to_owned()], |columns| rows += columns[0].len()).map(|()| rows)
+    };
+    assert_eq!(rows().unwrap(), 2);
+    fs::remove_file(&link).unwrap();
+    // Of a link without the name of a table nobody knows whether it leads to a folder of tables.
+    for (name, target) in [
+        ("b.parquet", "nowhere.parquet"),
+        ("b.parquet", "b.parquet"),
+        ("more", "nowhere"),
+        ("b.pq", "/dev/null"),
+    ] {
+        symlink(target, folder.join(name)).unwrap();
+        let refused = rows().unwrap_err().to_string();
+        assert!(refused.starts_with(&folder.join(name).display().to_string()), "{refused}");
+        assert_eq!(
+            refused.ends_with("it is not a regular file"),
+            target == "/dev/null",
+            "{refused}"
+        );
+        fs::remove_file(folder.join(name)).unwrap();
+    }
+    // What nobody takes for a table or a folder of tables keeps nobody from the tables.
+    symlink("/dev/null", folder.join("log")).unwrap();
+    symlink("nowhere", folder.join(".lock")).unwrap();
+    assert_eq!(rows().unwrap(), 1);
+    // A table below may be one that is away.
+    fs::create_dir(folder.join("more")).unwrap();
+    symlink("nowhere", folder.join("more/c.parquet")).unwrap();
+    assert!(rows().unwrap_err().to_string().contains("it has the folder more with Parquet files"));
+}
+
 proptest! {
     /// Of runs in groups a table is judged as the campaign is, however often it is looked at and whatever the order of the rows.
     #[test]

@@ -78,6 +78,24 @@ fn processes_share_a_study() {
     assert!(content(&scratch.path("shared")) == content(&scratch.path("whole")));
 }
 
+/// The scenario of a half study that is damaged was told without its file.
+#[test]
+fn the_scenario_of_a_study_that_was_begun_is_named_if_it_is_damaged() {
+    let scratch = Scratch::new();
+    let study = ["study", "--runs", "20", "--out", "here", "--shard"];
+    let done = |arguments: &[&str], code: i32| done(scratch.command(arguments), code);
+    done(&[&study[..], &["1/2"]].concat(), 0);
+    for text in ["", "name = 3", "runs"] {
+        fs::write(scratch.path("here/.gyradius/campaign/mark"), text).unwrap();
+        for verb in ["status", "report"] {
+            let said = done(&[verb, "here"], 2);
+            assert!(said.contains("here: the scenario that its study was begun with"), "{said}");
+        }
+    }
+    done(&[&study[..], &["2/2"]].concat(), 0);
+    done(&["report", "here"], 0);
+}
+
 /// A complete study that is extended in shards, and reported on before all of them are done, keeps its runs.
 #[test]
 fn a_report_of_part_of_an_extension_keeps_what_is_complete() {

@@ -85,6 +85,16 @@ impl AnyScenario {
         Ok(Self::Separation(Box::new(Scenario::from_toml(text)?)))
     }
 
+    /// Of the study in a folder, whose files say so.
+    fn of_study(text: &str, folder: &Path) -> Result<Self, StudyError> {
+        Self::from_toml(text, folder).map_err(|error| StudyError::Absent {
+            path: folder.to_owned(),
+            problem: format!(
+                "the scenario that its study was begun with cannot be read: {error}. The command of the study writes it anew"
+            ),
+        })
+    }
+
     /// The same scenario, whose simulation is a function of the program: [`SimulatorScenario::with_function`].
     ///
     /// # Errors
@@ -297,7 +307,7 @@ impl Status {
     /// The folder holds no study, or its files cannot be read.
     pub fn read(folder: &Path) -> Result<Self, StudyError> {
         let text = shards::text(folder)?;
-        let scenario = AnyScenario::from_toml(&text, folder)?;
+        let scenario = AnyScenario::of_study(&text, folder)?;
         of_either!(&scenario, scenario => Self::of(&**scenario, folder))
     }
 }
@@ -324,7 +334,7 @@ pub fn put_together(
         path: folder.to_owned(),
         problem: "it holds no study that was begun".to_owned(),
     })?;
-    let scenario = AnyScenario::from_toml(&text, folder)?;
+    let scenario = AnyScenario::of_study(&text, folder)?;
     of_either!(&scenario, scenario =>
         study::put_together(&**scenario, folder, options, say).map(|study| StudyOutcome::of(&study)))
 }
