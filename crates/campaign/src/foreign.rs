@@ -5,6 +5,7 @@ mod of_parquet;
 mod twice;
 
 use std::{
+    collections::BTreeMap,
     fs::{self, File},
     io::{self, Read},
     path::{Path, PathBuf},
@@ -57,6 +58,9 @@ enum Form {
     },
 }
 
+/// The folder in which Delta Lake keeps which files of a table are in force.
+const DELTA_LOG: &str = "_delta_log";
+
 const NOT_REGULAR: &str = "it is not a regular file";
 
 /// The numbers of some consecutive rows: of each column, one for each row, none where a cell is empty.
@@ -95,6 +99,12 @@ impl ForeignTable {
             }
             files.sort();
             folders.sort();
+            apart(&files)?;
+            if folders.iter().any(|folder| folder.ends_with(DELTA_LOG)) {
+                let problem = "it is a Delta table: which of its files hold rows that count stands in _delta_log, which is not read: write \
+                               its rows to a file";
+                return Err(failed(problem.to_owned()));
+            }
             for folder in folders.iter().filter(|_| !files.is_empty()) {
                 if holds_parquet(folder)? {
                     let below = folder.file_name().unwrap_or_default().display();
@@ -282,7 +292,7 @@ impl ForeignTable {
         let columns = (measured, written);
         for file in &self.files {
             match &self.form {
-                Form::Parquet => scan_parquet(file, columns, &mut look)?,
+                Form::Parquet => scan_parquet(file, columns, self.is_run_table(), &mut look)?,
                 Form::Csv { separator, text } => {
                     let form = (*separator, self.columns.len());
                     scan_csv(file, text, form, columns, &mut look)?;
@@ -306,17 +316,35 @@ fn is_hidden(path: &Path) -> bool {
 
 /// Whether a folder has Parquet files, at any depth.
 fn holds_parquet(folder: &Path) -> Result<bool, ForeignError> {
-    for entry in walkdir::WalkDir::new(folder) {
-        let entry = entry.map_err(|error| {
-            let path = error.path().unwrap_or(folder).to_owned();
-            unread_at(&path, io::Error::from(error).to_string())
-        })?;
+    for entry in walkdir::WalkDir::new(folder).follow_links(true) {
+        let entry = match entry {
+            // A link to a folder that it is in, which is looked at already.
+            Err(error) if error.loop_ancestor().is_some() => continue,
+            Err(error) => {
+                let path = error.path().unwrap_or(folder).to_owned();
+                return Err(unread_at(&path, io::Error::from(error).to_string()));
+            }
+            Ok(entry) => entry,
+        };
         if !entry.file_type().is_dir() && has_parquet_name(entry.path()) && !is_hidden(entry.path())
         {
             return Ok(true);
         }
     }
     Ok(false)
+}
+
+/// That no file is there twice, by links.
+fn apart(files: &[PathBuf]) -> Result<(), ForeignError> {
+    let mut seen: BTreeMap<PathBuf, &Path> = BTreeMap::new();
+    for file in files {
+        let whole = fs::canonicalize(file).map_err(|error| unread_at(file, error.to_string()))?;
+        if let Some(other) = seen.insert(whole, file) {
+            let problem = format!("it is the file {} again, and rows count once", other.display());
+            return Err(unread_at(file, problem));
+        }
+    }
+    Ok(())
 }
 
 fn unread_at(path: &Path, problem: String) -> ForeignError {
@@ -352,9 +380,16 @@ fn places<'a>(
 /// Where the status of a run is, in the run table of a study: a table that has `model`, `run` and `status`, in whatever order a copy
 /// has them and whatever else stands before.
 fn status(columns: &[String]) -> Option<usize> {
-    let place = |own: &Column| columns.iter().position(|name| name == own.name());
     let [model, run, status] = Column::first();
-    place(&model).and(place(&run)).and(place(&status))
+    let of_run = place_of(columns, &model).and(place_of(columns, &run));
+    of_run.and(place_of(columns, &status))
+}
+
+/// Where a column of the run tables of studies is, which a copy may have in other letters: the first of several.
+fn place_of(columns: &[String], own: &Column) -> Option<usize> {
+    let exact = columns.iter().position(|name| name == own.name());
+    let is_alike = |name: &String| name.trim().eq_ignore_ascii_case(own.name());
+    exact.or_else(|| columns.iter().position(is_alike))
 }
 
 /// Why a table cannot be read.

@@ -12,4 +12,5 @@ mod judged_tables;
 mod kept;
 mod requirement;
 mod scratch;
+mod tables_of_others;
 mod together;

@@ -1,11 +1,12 @@
 //! Tables of numbers in Parquet files of any writer.
 
 use parquet::{
-    basic::{Compression, LogicalType, Type as Physical},
+    basic::{Compression, ConvertedType, LogicalType, Type as Physical},
     column::reader::ColumnReader,
     data_type::ByteArray,
     errors::ParquetError,
     file::reader::{FileReader, SerializedFileReader},
+    schema::types::ColumnDescriptor,
 };
 use std::{collections::HashMap, fs::File, path::Path};
 
@@ -36,6 +37,7 @@ pub(super) fn unread(path: &Path, error: &ParquetError) -> ForeignError {
 pub(super) fn scan_parquet(
     path: &Path,
     (measured, written): (&[String], &[String]),
+    is_run_table: bool,
     look: &mut impl FnMut(&Columns),
 ) -> Result<(), ForeignError> {
     let failed = |error: ParquetError| unread(path, &error);
@@ -44,12 +46,13 @@ pub(super) fn scan_parquet(
     let places = places(path, &there, measured.iter().chain(written))?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     let durations = durations(&reader);
+    let wrong = |place: usize, problem: &str| ForeignError {
+        path: path.to_owned(),
+        problem: format!("the column {:?} {problem}", there[place]),
+    };
     for place in &places {
         let column = schema.column(*place);
-        let wrong = |problem: &str| ForeignError {
-            path: path.to_owned(),
-            problem: format!("the column {:?} {problem}", column.path().string()),
-        };
+        let wrong = |problem: &str| wrong(*place, problem);
         if column.max_rep_level() > 0 {
             return Err(wrong("is of lists, and must be of numbers"));
         }
@@ -64,7 +67,7 @@ pub(super) fn scan_parquet(
             | Physical::INT64
             | Physical::FLOAT
             | Physical::DOUBLE
-                if column.logical_type_ref().is_none_or(is_plain) => {}
+                if Whole::of(&column).is_some() => {}
             Physical::BOOLEAN
             | Physical::INT32
             | Physical::INT64
@@ -80,22 +83,31 @@ pub(super) fn scan_parquet(
         }
     }
     let status = status(&there);
+    if status.is_some() != is_run_table {
+        let problem = "some files of the folder have the columns model, run and status, and some have not: judge the run tables of studies \
+                       apart from other tables";
+        return Err(ForeignError { path: path.to_owned(), problem: problem.to_owned() });
+    }
+    if let Some(place) = status {
+        let column = schema.column(place);
+        if column.physical_type() != Physical::BYTE_ARRAY || column.max_rep_level() > 0 {
+            let problem = format!(
+                "says of each run whether it ended, and must be of texts, {OK:?} or why the run failed; give it another name if it says something else"
+            );
+            return Err(wrong(place, &problem));
+        }
+    }
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(failed)?;
         let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
         for place in places.iter().chain(&status) {
-            if let Some(codec) = unread_codec(group.metadata().column(*place).compression()) {
-                let problem = format!(
-                    "the column {:?} is compressed with {codec}, which is not read: write the table with snappy, gzip, lz4 or no \
-                     compression, in polars by df.write_parquet(path, compression=\"snappy\")",
-                    there[*place]
-                );
-                return Err(ForeignError { path: path.to_owned(), problem });
+            if let Some(problem) = unread_codec(group.metadata().column(*place).compression()) {
+                return Err(wrong(*place, &problem));
             }
         }
         let column = |place: &usize| {
-            let unsigned = schema.column(*place).logical_type_ref().is_some_and(is_unsigned);
-            numbers(group.get_column_reader(*place)?, rows, unsigned)
+            let whole = Whole::of(&schema.column(*place)).unwrap_or(Whole::Signed);
+            numbers(group.get_column_reader(*place)?, rows, whole)
         };
         let numbers = places.iter().map(column).collect::<Result<Vec<_>, ParquetError>>();
         let mut numbers = numbers.map_err(failed)?;
@@ -134,34 +146,101 @@ fn durations(reader: &SerializedFileReader<File>) -> HashMap<String, String> {
     columns.filter_map(type_of).collect()
 }
 
-/// How a column is compressed, if that is not read: what these need is in C, or large.
-pub(super) fn unread_codec(compression: Compression) -> Option<&'static str> {
-    match compression {
+/// Why a column is not read that is compressed so, if it is not: what these need is in C, or large.
+pub(super) fn unread_codec(compression: Compression) -> Option<String> {
+    let codec = match compression {
         Compression::UNCOMPRESSED
         | Compression::SNAPPY
         | Compression::GZIP(_)
         | Compression::LZ4
-        | Compression::LZ4_RAW => None,
-        Compression::LZO => Some("LZO"),
-        Compression::BROTLI(_) => Some("Brotli"),
-        Compression::ZSTD(_) => Some("zstd"),
+        | Compression::LZ4_RAW => return None,
+        Compression::LZO => "LZO",
+        Compression::BROTLI(_) => "Brotli",
+        Compression::ZSTD(_) => "zstd",
+    };
+    Some(format!(
+        "is compressed with {codec}, which is not read: write the table with snappy, gzip, lz4 or no compression, in polars by \
+         df.write_parquet(path, compression=\"snappy\")"
+    ))
+}
+
+/// What the highest bit of a whole number is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Whole {
+    Signed,
+    Unsigned,
+}
+
+impl Whole {
+    /// Of a column whose numbers mean what they are. The older of the two ways to say what a number means stands alone in the files of some
+    /// writers, DuckDB's among them.
+    pub(super) fn of(column: &ColumnDescriptor) -> Option<Self> {
+        match column.logical_type_ref() {
+            Some(LogicalType::Integer(whole)) if whole.is_signed => return Some(Self::Signed),
+            Some(LogicalType::Integer(_)) => return Some(Self::Unsigned),
+            Some(_) => return None,
+            None => {}
+        }
+        match column.converted_type() {
+            ConvertedType::NONE
+            | ConvertedType::INT_8
+            | ConvertedType::INT_16
+            | ConvertedType::INT_32
+            | ConvertedType::INT_64 => Some(Self::Signed),
+            ConvertedType::UINT_8
+            | ConvertedType::UINT_16
+            | ConvertedType::UINT_32
+            | ConvertedType::UINT_64 => Some(Self::Unsigned),
+            ConvertedType::UTF8
+            | ConvertedType::MAP
+            | ConvertedType::MAP_KEY_VALUE
+            | ConvertedType::LIST
+            | ConvertedType::ENUM
+            | ConvertedType::DECIMAL
+            | ConvertedType::DATE
+            | ConvertedType::TIME_MILLIS
+            | ConvertedType::TIME_MICROS
+            | ConvertedType::TIMESTAMP_MILLIS
+            | ConvertedType::TIMESTAMP_MICROS
+            | ConvertedType::JSON
+            | ConvertedType::BSON
+            | ConvertedType::INTERVAL => None,
+        }
     }
 }
 
-/// Whether a number means what it is.
-fn is_plain(logical: &LogicalType) -> bool {
-    matches!(logical, LogicalType::Integer(_))
-}
-
-/// Whether the highest bit of a whole number is no sign.
-fn is_unsigned(logical: &LogicalType) -> bool {
-    matches!(logical, LogicalType::Integer(whole) if !whole.is_signed)
+/// The cells of a column as texts: of numbers what they are.
+pub(super) fn texts(
+    reader: ColumnReader,
+    rows: usize,
+    whole: Whole,
+) -> Result<Vec<Option<String>>, ParquetError> {
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).trim_end_matches('\0').to_owned();
+    Ok(match reader {
+        ColumnReader::ByteArrayColumnReader(reader) => {
+            read(reader, rows)?.into_iter().map(|cell| cell.map(|c| text(c.data()))).collect()
+        }
+        ColumnReader::FixedLenByteArrayColumnReader(reader) => {
+            read(reader, rows)?.into_iter().map(|cell| cell.map(|c| text(c.data()))).collect()
+        }
+        ColumnReader::Int96ColumnReader(reader) => {
+            read(reader, rows)?.into_iter().map(|cell| cell.map(|c| format!("{c:?}"))).collect()
+        }
+        ColumnReader::BoolColumnReader(_)
+        | ColumnReader::Int32ColumnReader(_)
+        | ColumnReader::Int64ColumnReader(_)
+        | ColumnReader::FloatColumnReader(_)
+        | ColumnReader::DoubleColumnReader(_) => {
+            let numbers = numbers(reader, rows, whole)?;
+            numbers.into_iter().map(|cell| cell.map(|number| number.to_string())).collect()
+        }
+    })
 }
 
 pub(super) fn numbers(
     reader: ColumnReader,
     rows: usize,
-    unsigned: bool,
+    whole: Whole,
 ) -> Result<Vec<Option<f64>>, ParquetError> {
     macro_rules! all {
         ($reader:expr, $number:expr) => {
@@ -170,10 +249,10 @@ pub(super) fn numbers(
     }
     Ok(match reader {
         ColumnReader::BoolColumnReader(r) => all!(r, |flag| f64::from(u8::from(flag))),
-        ColumnReader::Int32ColumnReader(r) if unsigned => {
+        ColumnReader::Int32ColumnReader(r) if whole == Whole::Unsigned => {
             all!(r, |whole| f64::from(whole.cast_unsigned()))
         }
-        ColumnReader::Int64ColumnReader(r) if unsigned => {
+        ColumnReader::Int64ColumnReader(r) if whole == Whole::Unsigned => {
             all!(r, |whole| whole.cast_unsigned() as f64)
         }
         ColumnReader::Int32ColumnReader(r) => all!(r, f64::from),

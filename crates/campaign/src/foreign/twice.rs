@@ -1,9 +1,6 @@
 //! Runs that stand twice in a table, where its columns `model` and `run` say which run a row is.
 
-use parquet::{
-    basic::Type as Physical, column::reader::ColumnReader, errors::ParquetError,
-    file::reader::FileReader,
-};
+use parquet::{errors::ParquetError, file::reader::FileReader};
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
@@ -12,10 +9,10 @@ use std::{
 use super::{
     ForeignError, ForeignTable, Form,
     of_csv::{CsvText, broken, number, reader},
-    of_parquet::{names, numbers, open, unread, unread_codec},
-    places,
+    of_parquet::{Whole, names, open, texts, unread, unread_codec},
+    place_of,
 };
-use crate::{column::Column, spans::Spans, stored::read};
+use crate::{column::Column, spans::Spans};
 
 /// A run that has two rows.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -45,13 +42,11 @@ impl ForeignTable {
     /// # Errors
     /// A file cannot be read.
     pub(crate) fn twice(&self) -> Result<Option<TwiceError>, ForeignError> {
-        let [model, run, _] = Column::first();
-        let own = [model, run].map(|column| column.name().to_owned());
         let mut seen: BTreeMap<String, Spans> = BTreeMap::new();
         let mut twice = None;
         for (file, path) in self.files.iter().enumerate() {
-            let look = |model: &str, number: Option<f64>| {
-                let run = number.and_then(Column::run_named);
+            let look = |model: &str, run: &str| {
+                let run = number(run.trim()).flatten().and_then(Column::run_named);
                 let Some(run) = run.filter(|_| !model.trim().is_empty()) else { return };
                 if !seen.contains_key(model) {
                     seen.insert(model.to_owned(), Spans::default());
@@ -64,10 +59,10 @@ impl ForeignTable {
                 }
             };
             match &self.form {
-                Form::Parquet => look_parquet(path, &own, look)?,
+                Form::Parquet => look_parquet(path, look)?,
                 Form::Csv { separator, text } => {
                     let form = (*separator, self.columns.len());
-                    look_csv(path, text, form, &own, look)?;
+                    look_csv(path, text, form, look)?;
                 }
             }
             if twice.is_some() {
@@ -78,37 +73,41 @@ impl ForeignTable {
     }
 }
 
-fn look_parquet(
-    path: &Path,
-    own: &[String],
-    mut look: impl FnMut(&str, Option<f64>),
-) -> Result<(), ForeignError> {
+/// Where a table says which run a row is, by the columns `model` and `run`, each of which it has once.
+fn own_places(columns: &[String]) -> Option<[usize; 2]> {
+    let [model, run, _] = Column::first();
+    let only = |own: &Column| {
+        let place = place_of(columns, own)?;
+        let is_again = |name: &String| *name == columns[place];
+        (columns.iter().filter(|name| is_again(name)).count() == 1).then_some(place)
+    };
+    Some([only(&model)?, only(&run)?])
+}
+
+fn look_parquet(path: &Path, mut look: impl FnMut(&str, &str)) -> Result<(), ForeignError> {
     let failed = |error: ParquetError| unread(path, &error);
     let file = open(path).map_err(failed)?;
-    let Ok(places) = places(path, &names(&file), own.iter()) else { return Ok(()) };
+    let names = names(&file);
+    let Some(places) = own_places(&names) else { return Ok(()) };
     let schema = file.metadata().file_metadata().schema_descr_ptr();
-    let types = [places[0], places[1]].map(|place| schema.column(place).physical_type());
-    let is_number =
-        matches!(types[1], Physical::INT32 | Physical::INT64 | Physical::FLOAT | Physical::DOUBLE);
-    let is_flat = places.iter().all(|place| schema.column(*place).max_rep_level() == 0);
-    if types[0] != Physical::BYTE_ARRAY || !is_number || !is_flat {
+    if places.iter().any(|place| schema.column(*place).max_rep_level() > 0) {
         return Ok(());
     }
     for group in 0..file.num_row_groups() {
         let group = file.get_row_group(group).map_err(failed)?;
         let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
-        let codec = |place: &usize| unread_codec(group.metadata().column(*place).compression());
-        if places.iter().any(|place| codec(place).is_some()) {
-            return Ok(());
-        }
-        let models = group.get_column_reader(places[0]).map_err(failed)?;
-        let ColumnReader::ByteArrayColumnReader(models) = models else { return Ok(()) };
-        let models = read(models, rows).map_err(failed)?;
-        let runs = group.get_column_reader(places[1]).map_err(failed)?;
-        let runs = numbers(runs, rows, false).map_err(failed)?;
-        for (model, run) in models.iter().zip(runs) {
-            let model = model.as_ref().and_then(|text| text.as_utf8().ok());
-            look(model.unwrap_or_default(), run);
+        let cells = |place: usize| {
+            if let Some(problem) = unread_codec(group.metadata().column(place).compression()) {
+                let problem = format!("the column {:?} {problem}", names[place]);
+                return Err(ForeignError { path: path.to_owned(), problem });
+            }
+            let whole = Whole::of(&schema.column(place)).unwrap_or(Whole::Signed);
+            let cells = group.get_column_reader(place);
+            cells.and_then(|cells| texts(cells, rows, whole)).map_err(failed)
+        };
+        let [models, runs] = [cells(places[0])?, cells(places[1])?];
+        for (model, run) in models.iter().zip(&runs) {
+            look(model.as_deref().unwrap_or_default(), run.as_deref().unwrap_or_default());
         }
     }
     Ok(())
@@ -118,17 +117,16 @@ fn look_csv(
     path: &Path,
     text: &CsvText,
     form: (u8, usize),
-    own: &[String],
-    mut look: impl FnMut(&str, Option<f64>),
+    mut look: impl FnMut(&str, &str),
 ) -> Result<(), ForeignError> {
     let mut reader = reader(path, text, form)?;
     let headers = reader.headers().map_err(|error| broken(path, &error))?;
     let there: Vec<String> = headers.iter().map(str::to_owned).collect();
-    let Ok(places) = places(path, &there, own.iter()) else { return Ok(()) };
+    let Some(places) = own_places(&there) else { return Ok(()) };
     let mut row = csv::StringRecord::new();
     while reader.read_record(&mut row).map_err(|error| broken(path, &error))? {
         let cell = |place: usize| row.get(places[place]).unwrap_or_default();
-        look(cell(0), number(cell(1)).flatten());
+        look(cell(0), cell(1));
     }
     Ok(())
 }

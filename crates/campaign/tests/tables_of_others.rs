@@ -1,0 +1,298 @@
+//! Tables of others: folders of files, what numbers mean in Parquet, and runs that stand twice.
+
+use gyradius_campaign::{Cell, Column, ForeignTable, Judgement, Requirement, Table};
+use parquet::{
+    basic::{ConvertedType, Repetition, Type as Physical},
+    column::writer::ColumnWriter,
+    data_type::ByteArray,
+    file::writer::SerializedFileWriter,
+    schema::types::Type,
+};
+use std::{
+    fs::{self, File},
+    path::Path,
+    sync::Arc,
+};
+
+use crate::scratch::scratch;
+
+/// A column of a Parquet file: its name, how it is stored, what its numbers are said to mean in the older of the two ways, and its cells.
+type Stored<'a> = (&'a str, Physical, ConvertedType, &'a [&'a str]);
+
+fn write(path: &Path, columns: &[Stored<'_>]) {
+    let fields = columns.iter().map(|(name, physical, meaning, _)| {
+        let field = Type::primitive_type_builder(name, *physical);
+        let field = field.with_repetition(Repetition::REQUIRED).with_converted_type(*meaning);
+        let field = if *meaning == ConvertedType::DECIMAL {
+            field.with_precision(9).with_scale(2)
+        } else if *physical == Physical::FIXED_LEN_BYTE_ARRAY {
+            field.with_length(4)
+        } else {
+            field
+        };
+        Arc::new(field.build().unwrap())
+    });
+    let schema = Type::group_type_builder("it").with_fields(fields.collect()).build().unwrap();
+    let file = File::create(path).unwrap();
+    let mut writer = SerializedFileWriter::new(file, schema.into(), Arc::default()).unwrap();
+    let mut group = writer.next_row_group().unwrap();
+    for (.., cells) in columns {
+        macro_rules! write {
+            ($writer:expr, $of:expr) => {{
+                let cells: Vec<_> = cells.iter().map($of).collect();
+                $writer.write_batch(&cells, None, None).unwrap()
+            }};
+        }
+        let mut column = group.next_column().unwrap().unwrap();
+        match column.untyped() {
+            ColumnWriter::Int32ColumnWriter(w) => {
+                write!(w, |cell| cell.parse::<i64>().unwrap() as i32)
+            }
+            ColumnWriter::Int64ColumnWriter(w) => {
+                write!(w, |cell| cell.parse::<i128>().unwrap() as i64)
+            }
+            ColumnWriter::BoolColumnWriter(w) => write!(w, |cell| *cell == "true"),
+            ColumnWriter::DoubleColumnWriter(w) => write!(w, |cell| cell.parse().unwrap()),
+            ColumnWriter::ByteArrayColumnWriter(w) => write!(w, |cell| ByteArray::from(*cell)),
+            ColumnWriter::FixedLenByteArrayColumnWriter(w) => {
+                write!(w, |cell| ByteArray::from(*cell).into())
+            }
+            _ => panic!("no test writes this"),
+        };
+        column.close().unwrap();
+    }
+    group.close().unwrap();
+    writer.close().unwrap();
+}
+
+fn judged(path: &Path, requirement: &str) -> Result<[u64; 2], String> {
+    let requirement: Requirement = requirement.parse().unwrap();
+    let table = ForeignTable::open(path).map_err(|error| error.to_string())?;
+    let judged = Judgement::of_table(&[requirement], &table).map_err(|error| error.to_string())?;
+    Ok([judged[0].runs(), judged[0].failures()])
+}
+
+/// Of DuckDB's columns the older of the two ways to say what a number means stands alone: decimals were read as hundreds of what they
+/// are, and large unsigned numbers as negative ones.
+#[test]
+fn numbers_mean_what_either_way_says() {
+    let scratch = scratch();
+    let path = scratch.path().join("it.parquet");
+    for (physical, meaning, cell, is_large) in [
+        (Physical::INT32, ConvertedType::DECIMAL, "5", None),
+        (Physical::INT64, ConvertedType::DECIMAL, "5", None),
+        (Physical::INT32, ConvertedType::DATE, "18262", None),
+        (Physical::INT32, ConvertedType::TIME_MILLIS, "5", None),
+        (Physical::INT64, ConvertedType::TIME_MICROS, "5", None),
+        (Physical::INT64, ConvertedType::TIMESTAMP_MILLIS, "5", None),
+        (Physical::INT64, ConvertedType::TIMESTAMP_MICROS, "5", None),
+        (Physical::BYTE_ARRAY, ConvertedType::UTF8, "5", None),
+        (Physical::INT32, ConvertedType::UINT_32, "4000000000", Some(true)),
+        (Physical::INT64, ConvertedType::UINT_64, "18000000000000000000", Some(true)),
+        (Physical::INT32, ConvertedType::UINT_8, "200", Some(true)),
+        (Physical::INT32, ConvertedType::UINT_16, "60000", Some(true)),
+        (Physical::INT32, ConvertedType::INT_8, "-3", Some(false)),
+        (Physical::INT32, ConvertedType::INT_16, "-3", Some(false)),
+        (Physical::INT32, ConvertedType::INT_32, "-3", Some(false)),
+        (Physical::INT64, ConvertedType::INT_64, "-3", Some(false)),
+        (Physical::INT32, ConvertedType::NONE, "-3", Some(false)),
+    ] {
+        write(&path, &[("x", physical, meaning, &[cell; 3])]);
+        let found = judged(&path, "x <= 100 in 60 % at 80 %");
+        match is_large {
+            Some(is_large) => {
+                assert_eq!(found, Ok([3, if is_large { 3 } else { 0 }]), "{physical} {meaning}");
+            }
+            None => {
+                let refused = found.unwrap_err();
+                assert!(refused.contains("dates or decimals"), "{physical} {meaning}: {refused}");
+            }
+        }
+    }
+}
+
+/// A run that stands twice was counted twice where the columns that name it are of other types than those of a study.
+#[test]
+fn runs_that_stand_twice_are_seen_however_they_are_named() {
+    const MODELS: [(Physical, ConvertedType, [&str; 2]); 5] = [
+        (Physical::BYTE_ARRAY, ConvertedType::UTF8, ["a", "b"]),
+        (Physical::FIXED_LEN_BYTE_ARRAY, ConvertedType::NONE, ["aaaa", "bbbb"]),
+        (Physical::INT32, ConvertedType::NONE, ["1", "2"]),
+        (Physical::INT64, ConvertedType::UINT_64, ["1", "2"]),
+        (Physical::BOOLEAN, ConvertedType::NONE, ["true", "false"]),
+    ];
+    const RUNS: [(Physical, ConvertedType, [&str; 2]); 5] = [
+        (Physical::INT64, ConvertedType::NONE, ["0", "1"]),
+        (Physical::INT32, ConvertedType::UINT_32, ["3000000000", "3000000001"]),
+        (Physical::INT64, ConvertedType::UINT_64, ["3000000000", "3000000001"]),
+        (Physical::DOUBLE, ConvertedType::NONE, ["0", "1"]),
+        (Physical::BYTE_ARRAY, ConvertedType::UTF8, ["0", " 1"]),
+    ];
+    let scratch = scratch();
+    let path = scratch.path().join("it.parquet");
+    for names in [["model", "run"], ["Model", "RUN "]] {
+        for (of_model, model_meaning, [a, b]) in MODELS {
+            for (of_run, run_meaning, [first, second]) in RUNS {
+                for (models, runs, is_twice) in [
+                    ([a, b], [first; 2], false),
+                    ([a; 2], [first, second], false),
+                    ([b; 2], [first; 2], true),
+                ] {
+                    write(
+                        &path,
+                        &[
+                            (names[0], of_model, model_meaning, &models),
+                            (names[1], of_run, run_meaning, &runs),
+                            ("x", Physical::DOUBLE, ConvertedType::NONE, &["1", "2"]),
+                        ],
+                    );
+                    let found = judged(&path, "x <= 3 in 60 % at 80 %");
+                    let what = format!("{of_model} {of_run} {models:?} {runs:?}: {found:?}");
+                    match found {
+                        Ok(counts) => assert!(!is_twice && counts == [2, 0], "{what}"),
+                        Err(refused) => {
+                            assert!(is_twice && refused.contains("a run counts once"), "{what}")
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Rows of failed runs counted as successes where the column that says so is of another type, or in other letters, or in some files alone.
+#[test]
+fn runs_that_failed_are_seen_or_the_table_is_refused() {
+    let scratch = scratch();
+    let folder = scratch.path();
+    let table = |name: &str, run: &str, status: Option<Stored<'_>>| {
+        let mut columns: Vec<Stored<'_>> = vec![
+            ("model", Physical::BYTE_ARRAY, ConvertedType::UTF8, &["a"]),
+            ("run", Physical::INT64, ConvertedType::NONE, std::slice::from_ref(&run)),
+            ("x", Physical::DOUBLE, ConvertedType::NONE, &["1"]),
+        ];
+        columns.extend(status);
+        write(&folder.join(name), &columns);
+    };
+    let text = |name| (name, Physical::BYTE_ARRAY, ConvertedType::UTF8, &["no contact"][..]);
+    const REQUIREMENT: &str = "x <= 3 in 60 % at 80 %";
+    for name in ["status", "Status", "STATUS "] {
+        table("a.parquet", "0", Some(text(name)));
+        assert_eq!(judged(&folder.join("a.parquet"), REQUIREMENT), Ok([1, 1]), "{name}");
+    }
+    for (physical, cell) in [
+        (Physical::BOOLEAN, "false"),
+        (Physical::INT32, "0"),
+        (Physical::FIXED_LEN_BYTE_ARRAY, "ok  "),
+    ] {
+        table("a.parquet", "0", Some(("status", physical, ConvertedType::NONE, &[cell])));
+        let refused = judged(&folder.join("a.parquet"), REQUIREMENT).unwrap_err();
+        assert!(refused.contains("\"status\" says of each run whether it ended"), "{refused}");
+    }
+    for (first, second) in [(Some(text("status")), None), (None, Some(text("Status")))] {
+        table("a.parquet", "0", first);
+        table("b.parquet", "1", second);
+        let refused = judged(folder, REQUIREMENT).unwrap_err();
+        assert!(refused.contains("some files of the folder have the columns"), "{refused}");
+    }
+}
+
+/// A folder is all its Parquet files, however these end; one with more of them below is refused, for they would not be read.
+#[test]
+fn a_folder_is_all_its_files() {
+    let scratch = scratch();
+    let table = |from: u64| {
+        let mut table = Table::new("m", from, vec![Column::number("x", "1", "a number")]).unwrap();
+        (0..10).for_each(|_| table.push(None, [Cell::Number(from as f64)]).unwrap());
+        table
+    };
+    let folder = scratch.path().join("runs");
+    fs::create_dir_all(folder.join("figures")).unwrap();
+    fs::write(folder.join("figures/it.svg"), "").unwrap();
+    for (place, name) in ["a.parquet", "b.pq", "c.PARQUET", "d.Pq"].into_iter().enumerate() {
+        table(10 * place as u64).write_parquet(File::create(folder.join(name)).unwrap()).unwrap();
+    }
+    fs::write(folder.join(".half.parquet"), "PAR1").unwrap();
+    let requirement: [Requirement; 1] = ["x <= 15 in 60 % at 80 %".parse().unwrap()];
+    let judged = Judgement::of_table(&requirement, &ForeignTable::open(&folder).unwrap()).unwrap();
+    assert_eq!((judged[0].runs(), judged[0].failures()), (40, 20));
+    let below = folder.join("part=1/more");
+    fs::create_dir_all(&below).unwrap();
+    assert!(ForeignTable::open(&folder).is_ok());
+    table(40).write_parquet(File::create(below.join("e.parquet")).unwrap()).unwrap();
+    let refused = ForeignTable::open(&folder).unwrap_err().to_string();
+    assert!(
+        refused.contains("beside its files it has the folder part=1 with Parquet files"),
+        "{refused}"
+    );
+}
+
+/// A table that cannot be reached was passed over, and the others were judged without a word.
+#[cfg(unix)]
+#[test]
+fn what_cannot_be_reached_is_refused_and_never_passed_over() {
+    use std::os::unix::fs::symlink;
+    let scratch = scratch();
+    let folder = scratch.path().join("runs");
+    fs::create_dir(&folder).unwrap();
+    let table = |path: &Path| {
+        let mut table = Table::new("m", 0, vec![Column::number("x", "1", "a number")]).unwrap();
+        table.push(None, [Cell::Number(1.0)]).unwrap();
+        table.write_parquet(File::create(path).unwrap()).unwrap();
+    };
+    table(&folder.join("a.parquet"));
+    let elsewhere = scratch.path().join("elsewhere.parquet");
+    table(&elsewhere);
+    let link = folder.join("b.parquet");
+    symlink(&elsewhere, &link).unwrap();
+    let rows = || {
+        let mut rows = 0;
+        let table = ForeignTable::open(&folder)?;
+        table.scan(&["x".to_owned()], |columns| rows += columns[0].len()).map(|()| rows)
+    };
+    assert_eq!(rows().unwrap(), 2);
+    fs::remove_file(&link).unwrap();
+    // Of a link without the name of a table nobody knows whether it leads to a folder of tables.
+    for (name, target) in [
+        ("b.parquet", "nowhere.parquet"),
+        ("b.parquet", "b.parquet"),
+        ("more", "nowhere"),
+        ("b.pq", "/dev/null"),
+    ] {
+        symlink(target, folder.join(name)).unwrap();
+        let refused = rows().unwrap_err().to_string();
+        assert!(refused.starts_with(&folder.join(name).display().to_string()), "{refused}");
+        assert_eq!(
+            refused.ends_with("it is not a regular file"),
+            target == "/dev/null",
+            "{refused}"
+        );
+        fs::remove_file(folder.join(name)).unwrap();
+    }
+    // What nobody takes for a table or a folder of tables keeps nobody from the tables.
+    symlink("/dev/null", folder.join("log")).unwrap();
+    symlink("nowhere", folder.join(".lock")).unwrap();
+    assert_eq!(rows().unwrap(), 1);
+    // A file that is reached twice would count twice.
+    symlink("a.parquet", folder.join("latest.parquet")).unwrap();
+    assert!(rows().unwrap_err().to_string().contains("again, and rows count once"));
+    fs::remove_file(folder.join("latest.parquet")).unwrap();
+    // Links to folders are folders, and one that leads back is looked at once.
+    fs::create_dir(folder.join("other")).unwrap();
+    symlink(".", folder.join("other/back")).unwrap();
+    assert_eq!(rows().unwrap(), 1);
+    let far = scratch.path().join("far");
+    fs::create_dir(&far).unwrap();
+    table(&far.join("c.parquet"));
+    symlink(&far, folder.join("other/far")).unwrap();
+    assert!(rows().unwrap_err().to_string().contains("it has the folder other with Parquet files"));
+    fs::remove_dir_all(folder.join("other")).unwrap();
+    fs::create_dir(folder.join("_delta_log")).unwrap();
+    assert!(rows().unwrap_err().to_string().contains("it is a Delta table"));
+    fs::remove_dir(folder.join("_delta_log")).unwrap();
+    // A table below may be one that is away.
+    fs::create_dir(folder.join("more")).unwrap();
+    symlink("nowhere", folder.join("more/c.parquet")).unwrap();
+    let refused = rows().unwrap_err().to_string();
+    assert!(refused.starts_with(&folder.join("more/c.parquet").display().to_string()), "{refused}");
+}
