@@ -161,6 +161,42 @@ fn files_are_written_once_and_never_over() {
     );
 }
 
+/// Links that are written with expressions were left out without a word.
+#[test]
+fn what_was_not_read_is_told() {
+    let link = |i: usize, xx: &str| {
+        format!(
+            "<link name=\"l{i}\"><inertial><mass value=\"1\"/><inertia ixx=\"{xx}\" iyy=\"{}\" izz=\"{}\" \
+             ixy=\"0.01\" ixz=\"0.02\" iyz=\"{}\"/></inertial></link>\n",
+            2.0 + 0.03 * (i % 5) as f64,
+            2.5 - 0.02 * (i % 7) as f64,
+            0.001 * (i % 3) as f64
+        )
+    };
+    let shell = Shell::new();
+    for unread in [0, 5] {
+        let all = (0..20).map(|i| {
+            let xx =
+                if i < unread { "${xx}".to_owned() } else { (1.0 + 0.01 * i as f64).to_string() };
+            link(i, &xx)
+        });
+        shell.write(
+            "it.urdf",
+            &format!(
+                "<robot name=\"r\" xmlns:xacro=\"http://www.ros.org/wiki/xacro\">{}</robot>",
+                all.collect::<String>()
+            ),
+        );
+        let (code, report, said) = shell.run(&["fit", "it.urdf"]);
+        assert!(code != 2, "{report}{said}");
+        let (_, json) = shell.json(&["fit", "it.urdf"]);
+        assert_eq!(json["samples"], 20 - unread);
+        let told = json["unread"].as_array().unwrap();
+        assert_eq!(told.len(), usize::from(unread > 0), "{told:?}");
+        assert_eq!(report.contains("xacro"), unread > 0, "{report}");
+    }
+}
+
 #[test]
 fn json_has_what_the_report_has() {
     let shell = Shell::new();

@@ -23,6 +23,7 @@ struct Document {
     set_aside: usize,
     rounded: usize,
     unused_columns: Vec<String>,
+    unread: Vec<String>,
     matching: MatchingJson,
     roots: Vec<RootJson>,
     axes: AxesJson,
@@ -138,6 +139,7 @@ pub(super) fn text(
         set_aside: table.aside,
         rounded: table.rounded,
         unused_columns: table.unused.clone(),
+        unread: table.unread.clone(),
         matching: MatchingJson {
             reordered: matching.swapped,
             turned_round: matching.flipped,

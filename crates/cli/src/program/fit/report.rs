@@ -56,6 +56,11 @@ fn write_text(
             writeln!(out, "{line}")?;
         }
     }
+    for unread in &table.unread {
+        for line in wrapped(unread) {
+            writeln!(out, "{line}")?;
+        }
+    }
     let matching = fit.matching();
     writeln!(
         out,

@@ -57,6 +57,8 @@ pub(super) struct Table {
     pub(super) bodies: Option<Vec<MassProperties>>,
     /// The headings of columns of which nothing was taken.
     pub(super) unused: Vec<String>,
+    /// What else of the file was not read, though it may hold samples.
+    pub(super) unread: Vec<String>,
 }
 
 impl Table {
@@ -87,6 +89,7 @@ pub(super) fn read(
         rounded: 0,
         bodies: ten.is_some().then(Vec::new),
         unused,
+        unread: file.gaps().iter().map(|gap| format!("line {}: {gap}", gap.line())).collect(),
     };
     let mut refused: Option<(usize, &FileBody, String)> = None;
     for (index, body) in file.bodies().iter().enumerate() {
