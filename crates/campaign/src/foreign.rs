@@ -73,7 +73,7 @@ impl ForeignTable {
     /// # Errors
     /// There is no such file, it is no regular file, or its head cannot be read.
     pub fn open(path: &Path) -> Result<Self, ForeignError> {
-        let failed = |problem: String| ForeignError { path: path.to_owned(), problem };
+        let failed = |problem: String| ForeignError::new(path, problem);
         let unread = |error: io::Error| failed(error.to_string());
         let found = fs::metadata(path);
         let found = found.map_err(|error| failed(Origin::why_none(path, error.to_string())))?;
@@ -87,12 +87,12 @@ impl ForeignTable {
                 }
                 // What cannot be looked at, such as a link to a disk that is away, may be a table, or a folder of tables.
                 let found = fs::metadata(&there);
-                let found = found.map_err(|error| unread_at(&there, error.to_string()))?;
+                let found = found.map_err(|error| ForeignError::new(&there, error.to_string()))?;
                 if found.is_dir() {
                     folders.push(there);
                 } else if has_parquet_name(&there) {
                     if !found.is_file() {
-                        return Err(unread_at(&there, NOT_REGULAR.to_owned()));
+                        return Err(ForeignError::new(&there, NOT_REGULAR));
                     }
                     files.push(there);
                 }
@@ -152,7 +152,7 @@ impl ForeignTable {
     /// # Errors
     /// The source cannot be read, hands out more, or a Parquet file, or its first line cannot be read.
     pub fn read_csv(name: &Path, source: impl Read) -> Result<Self, ForeignError> {
-        let failed = |problem: String| ForeignError { path: name.to_owned(), problem };
+        let failed = |problem: String| ForeignError::new(name, problem);
         let mut bytes = Vec::new();
         let read = source.take(MOST_HELD + 1).read_to_end(&mut bytes);
         read.map_err(|error| failed(error.to_string()))?;
@@ -229,7 +229,7 @@ impl ForeignTable {
     /// Why it cannot be judged.
     #[must_use]
     pub fn refused(&self, problem: &str) -> ForeignError {
-        ForeignError { path: self.path.clone(), problem: problem.to_owned() }
+        ForeignError::new(&self.path, problem)
     }
 
     /// How verdicts count its runs, as the folder of the campaign says that it is in; as independent runs that are looked at once, if it is in
@@ -322,7 +322,7 @@ fn holds_parquet(folder: &Path) -> Result<bool, ForeignError> {
             Err(error) if error.loop_ancestor().is_some() => continue,
             Err(error) => {
                 let path = error.path().unwrap_or(folder).to_owned();
-                return Err(unread_at(&path, io::Error::from(error).to_string()));
+                return Err(ForeignError::new(&path, io::Error::from(error).to_string()));
             }
             Ok(entry) => entry,
         };
@@ -338,17 +338,14 @@ fn holds_parquet(folder: &Path) -> Result<bool, ForeignError> {
 fn apart(files: &[PathBuf]) -> Result<(), ForeignError> {
     let mut seen: BTreeMap<PathBuf, &Path> = BTreeMap::new();
     for file in files {
-        let whole = fs::canonicalize(file).map_err(|error| unread_at(file, error.to_string()))?;
+        let whole =
+            fs::canonicalize(file).map_err(|error| ForeignError::new(file, error.to_string()))?;
         if let Some(other) = seen.insert(whole, file) {
             let problem = format!("it is the file {} again, and rows count once", other.display());
-            return Err(unread_at(file, problem));
+            return Err(ForeignError::new(file, problem));
         }
     }
     Ok(())
-}
-
-fn unread_at(path: &Path, problem: String) -> ForeignError {
-    ForeignError { path: path.to_owned(), problem }
 }
 
 /// Where columns are among those that there are.
@@ -374,7 +371,7 @@ fn places<'a>(
         }
     };
     let places = columns.map(place).collect::<Result<_, String>>();
-    places.map_err(|problem| ForeignError { path: path.to_owned(), problem })
+    places.map_err(|problem| ForeignError::new(path, problem))
 }
 
 /// Where the status of a run is, in the run table of a study: a table that has `model`, `run` and `status`, in whatever order a copy
@@ -398,6 +395,17 @@ fn place_of(columns: &[String], own: &Column) -> Option<usize> {
 pub struct ForeignError {
     path: PathBuf,
     problem: String,
+}
+
+impl ForeignError {
+    fn new(path: &Path, problem: impl Into<String>) -> Self {
+        Self { path: path.to_owned(), problem: problem.into() }
+    }
+
+    /// What a column is or has.
+    fn of_column(path: &Path, name: &str, problem: &str) -> Self {
+        Self::new(path, format!("the column {name:?} {problem}"))
+    }
 }
 
 /// A run table of a study that does not hold the rows of all runs as they were written, so that it cannot tell how many keep

@@ -90,11 +90,13 @@ fn from_toml<'a>(source: &str, value: &DeValue<'a>, span: &Range<usize>, depth: 
         DeValue::Integer(integer) => {
             // Hexadecimal integers are numbers too, if hardly inertias.
             let digits = integer.as_str();
-            let decimal = match (integer.radix(), i128::from_str_radix(digits, integer.radix())) {
-                (10, _) => digits.to_owned(),
-                (_, Ok(value)) => value.to_string(),
-                // Too long: as it is written, which is refused as a number.
-                (_, Err(_)) => source.get(span.clone()).unwrap_or(digits).to_owned(),
+            let decimal = match integer.radix() {
+                10 => digits.to_owned(),
+                radix => i128::from_str_radix(digits, radix).map_or_else(
+                    // Too long: as it is written, which is refused as a number.
+                    |_| source.get(span.clone()).unwrap_or(digits).to_owned(),
+                    |value| value.to_string(),
+                ),
             };
             Value::Number(decimal.into(), span.end)
         }

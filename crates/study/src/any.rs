@@ -90,7 +90,7 @@ impl AnyScenario {
         Self::from_toml(text, folder).map_err(|error| StudyError::Absent {
             path: folder.to_owned(),
             problem: format!(
-                "the scenario that its study was begun with cannot be read: {error}. The command of the study, without --shard, goes on all the same"
+                "the scenario that its study was begun with cannot be read: {error}. If the study is not finished, its command, without --shard, goes on all the same"
             ),
         })
     }

@@ -47,7 +47,7 @@ pub(super) fn csv_columns(path: &Path, text: &CsvText) -> Result<(u8, Vec<String
     let (separator, (_, names)) = best;
     if names.iter().all(String::is_empty) {
         let problem = "it is empty: the first line must have the names of the columns".to_owned();
-        return Err(ForeignError { path: path.to_owned(), problem });
+        return Err(ForeignError::new(path, problem));
     }
     Ok((separator, names))
 }
@@ -82,7 +82,7 @@ pub(super) fn broken(path: &Path, error: &csv::Error) -> ForeignError {
         }
         _ => error.to_string(),
     };
-    ForeignError { path: path.to_owned(), problem }
+    ForeignError::new(path, problem)
 }
 
 pub(super) fn scan_csv(
@@ -118,7 +118,7 @@ pub(super) fn scan_csv(
                         "line {line}, column {:?}: {cell:?} is not a number",
                         there[*place]
                     );
-                    ForeignError { path: path.to_owned(), problem }
+                    ForeignError::new(path, problem)
                 })?;
                 let is_taken =
                     |x: &f64| ended || column >= measured.len() || Failure::has_number(*x);
@@ -153,7 +153,7 @@ fn open_quotation(
     let (line, end) = last.filter(|_| matches!(more, Ok(false)))?;
     let problem = || format!("line {line}: a quotation mark opens a cell, and none closes it");
     let is_open = reader.position().byte() == end;
-    is_open.then(|| ForeignError { path: path.to_owned(), problem: problem() })
+    is_open.then(|| ForeignError::new(path, problem()))
 }
 
 /// What stands in a cell: a number, or nothing; none if it is something else.

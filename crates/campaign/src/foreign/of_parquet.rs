@@ -31,7 +31,7 @@ pub(super) fn open(path: &Path) -> Result<SerializedFileReader<File>, ParquetErr
 }
 
 pub(super) fn unread(path: &Path, error: &ParquetError) -> ForeignError {
-    ForeignError { path: path.to_owned(), problem: said(error) }
+    ForeignError::new(path, said(error))
 }
 
 pub(super) fn scan_parquet(
@@ -46,10 +46,7 @@ pub(super) fn scan_parquet(
     let places = places(path, &there, measured.iter().chain(written))?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     let durations = durations(&reader);
-    let wrong = |place: usize, problem: &str| ForeignError {
-        path: path.to_owned(),
-        problem: format!("the column {:?} {problem}", there[place]),
-    };
+    let wrong = |place: usize, problem: &str| ForeignError::of_column(path, &there[place], problem);
     for place in &places {
         let column = schema.column(*place);
         let wrong = |problem: &str| wrong(*place, problem);
@@ -86,7 +83,7 @@ pub(super) fn scan_parquet(
     if status.is_some() != is_run_table {
         let problem = "some files of the folder have the columns model, run and status, and some have not: judge the run tables of studies \
                        apart from other tables";
-        return Err(ForeignError { path: path.to_owned(), problem: problem.to_owned() });
+        return Err(ForeignError::new(path, problem));
     }
     if let Some(place) = status {
         let column = schema.column(place);

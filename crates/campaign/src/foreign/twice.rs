@@ -1,6 +1,6 @@
 //! Runs that stand twice in a table, where its columns `model` and `run` say which run a row is.
 
-use parquet::{errors::ParquetError, file::reader::FileReader};
+use parquet::{column::reader::ColumnReader, errors::ParquetError, file::reader::FileReader};
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
@@ -9,7 +9,7 @@ use std::{
 use super::{
     ForeignError, ForeignTable, Form,
     of_csv::{CsvText, broken, number, reader},
-    of_parquet::{Whole, names, open, texts, unread, unread_codec},
+    of_parquet::{Whole, names, numbers, open, texts, unread, unread_codec},
     place_of,
 };
 use crate::{column::Column, spans::Spans};
@@ -45,8 +45,8 @@ impl ForeignTable {
         let mut seen: BTreeMap<String, Spans> = BTreeMap::new();
         let mut twice = None;
         for (file, path) in self.files.iter().enumerate() {
-            let look = |model: &str, run: &str| {
-                let run = number(run.trim()).flatten().and_then(Column::run_named);
+            let look = |model: &str, run: Option<f64>| {
+                let run = run.and_then(Column::run_named);
                 let Some(run) = run.filter(|_| !model.trim().is_empty()) else { return };
                 if !seen.contains_key(model) {
                     seen.insert(model.to_owned(), Spans::default());
@@ -84,7 +84,7 @@ fn own_places(columns: &[String]) -> Option<[usize; 2]> {
     Some([only(&model)?, only(&run)?])
 }
 
-fn look_parquet(path: &Path, mut look: impl FnMut(&str, &str)) -> Result<(), ForeignError> {
+fn look_parquet(path: &Path, mut look: impl FnMut(&str, Option<f64>)) -> Result<(), ForeignError> {
     let failed = |error: ParquetError| unread(path, &error);
     let file = open(path).map_err(failed)?;
     let names = names(&file);
@@ -93,31 +93,54 @@ fn look_parquet(path: &Path, mut look: impl FnMut(&str, &str)) -> Result<(), For
     if places.iter().any(|place| schema.column(*place).max_rep_level() > 0) {
         return Ok(());
     }
+    let whole = places.map(|place| Whole::of(&schema.column(place)).unwrap_or(Whole::Signed));
     for group in 0..file.num_row_groups() {
         let group = file.get_row_group(group).map_err(failed)?;
         let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
-        let cells = |place: usize| {
+        for place in places {
             if let Some(problem) = unread_codec(group.metadata().column(place).compression()) {
-                let problem = format!("the column {:?} {problem}", names[place]);
-                return Err(ForeignError { path: path.to_owned(), problem });
+                return Err(ForeignError::of_column(path, &names[place], &problem));
             }
-            let whole = Whole::of(&schema.column(place)).unwrap_or(Whole::Signed);
-            let cells = group.get_column_reader(place);
-            cells.and_then(|cells| texts(cells, rows, whole)).map_err(failed)
-        };
+        }
+        let cells = |place: usize| group.get_column_reader(place).map_err(failed);
         let [models, runs] = [cells(places[0])?, cells(places[1])?];
-        for (model, run) in models.iter().zip(&runs) {
-            look(model.as_deref().unwrap_or_default(), run.as_deref().unwrap_or_default());
+        let [of_model, of_run] = whole;
+        let models = texts(models, rows, of_model).map_err(failed)?;
+        let runs = numbers_or_texts(runs, rows, of_run).map_err(failed)?;
+        for (model, run) in models.iter().zip(runs) {
+            look(model.as_deref().unwrap_or_default(), run);
         }
     }
     Ok(())
+}
+
+/// The numbers of runs, which may be written as texts.
+fn numbers_or_texts(
+    reader: ColumnReader,
+    rows: usize,
+    whole: Whole,
+) -> Result<Vec<Option<f64>>, ParquetError> {
+    if matches!(
+        reader,
+        ColumnReader::ByteArrayColumnReader(_)
+            | ColumnReader::FixedLenByteArrayColumnReader(_)
+            | ColumnReader::Int96ColumnReader(_)
+    ) {
+        let texts = texts(reader, rows, whole)?;
+        return Ok(texts.iter().map(|cell| run(cell.as_deref()?)).collect());
+    }
+    numbers(reader, rows, whole)
+}
+
+fn run(cell: &str) -> Option<f64> {
+    number(cell.trim()).flatten()
 }
 
 fn look_csv(
     path: &Path,
     text: &CsvText,
     form: (u8, usize),
-    mut look: impl FnMut(&str, &str),
+    mut look: impl FnMut(&str, Option<f64>),
 ) -> Result<(), ForeignError> {
     let mut reader = reader(path, text, form)?;
     let headers = reader.headers().map_err(|error| broken(path, &error))?;
@@ -126,7 +149,7 @@ fn look_csv(
     let mut row = csv::StringRecord::new();
     while reader.read_record(&mut row).map_err(|error| broken(path, &error))? {
         let cell = |place: usize| row.get(places[place]).unwrap_or_default();
-        look(cell(0), cell(1));
+        look(cell(0), run(cell(1)));
     }
     Ok(())
 }

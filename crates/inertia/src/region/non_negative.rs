@@ -58,15 +58,14 @@ pub(super) fn rest<const N: usize>(
 
 /// The weights of the columns in use, of any sign, by the factors Q R that Gram and Schmidt find. Made orthogonal twice, they
 /// are so to rounding (Giraud, Langou, Rozložník and van den Eshof 2005, doi 10.1007/s00211-005-0615-4). A column that the
-/// ones before it make has no weight.
+/// ones before it make has no weight. There are no more columns than rows.
 fn least_squares<const N: usize>(
     columns: &[SVector<f64, N>],
     used: &[usize],
     b: &SVector<f64, N>,
 ) -> SVector<f64, N> {
     let (mut q, mut r) = (SMatrix::<f64, N, N>::zeros(), SMatrix::<f64, N, N>::zeros());
-    let count = used.len().min(N);
-    for (k, &j) in used[..count].iter().enumerate() {
+    for (k, &j) in used.iter().enumerate() {
         let mut rest = columns[j];
         for _ in 0..2 {
             for i in 0..k {
@@ -82,8 +81,8 @@ fn least_squares<const N: usize>(
         }
     }
     let mut weights = SVector::<f64, N>::zeros();
-    for k in (0..count).rev().filter(|&k| r[(k, k)] > 0.0) {
-        let others: f64 = (k + 1..count).map(|i| r[(k, i)] * weights[i]).sum();
+    for k in (0..used.len()).rev().filter(|&k| r[(k, k)] > 0.0) {
+        let others: f64 = (k + 1..used.len()).map(|i| r[(k, i)] * weights[i]).sum();
         weights[k] = (q.column(k).dot(b) - others) / r[(k, k)];
     }
     weights
