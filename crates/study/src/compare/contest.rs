@@ -3,7 +3,7 @@
 use gyradius_campaign::{Share, Streams, counted};
 use gyradius_dispersion::ModelKind;
 use gyradius_inertia::InertiaMatrix;
-use gyradius_separation::SpinMetrics;
+use gyradius_separation::{Batch, Outcome, SpinMetrics};
 use gyradius_statistics::{Confidence, StatisticsError};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -26,6 +26,9 @@ pub(crate) struct Cell {
     pub(crate) problem: Option<String>,
     pub(crate) results: Option<Results>,
 }
+
+/// Separations of a batch: its lanes stand idle at its end alone, and there are enough batches for many threads.
+const TOGETHER: usize = 32;
 
 /// Refuses once somebody wants an end: a separation of some scenarios takes a second.
 pub(crate) type GoOn<'a> = &'a (dyn Fn() -> Result<(), StudyError> + Sync);
@@ -80,10 +83,12 @@ impl Cell {
                     .into_par_iter()
                     .map(|run| Drawn::new(&draw(run), scenario))
                     .collect();
-                let separated: Vec<Result<Option<f64>, RunFailure>> = (0..size.separations)
-                    .into_par_iter()
-                    .map(|run| go_on().map(|()| nutation(draw(run), scenario)))
-                    .collect::<Result<_, StudyError>>()?;
+                let runs: Vec<u64> = (0..size.separations).collect();
+                let groups = runs.par_chunks(TOGETHER).map(|runs| {
+                    let payloads = runs.iter().map(|run| draw(*run));
+                    nutations(payloads, scenario, go_on)
+                });
+                let separated = groups.collect::<Result<Vec<_>, StudyError>>()?.concat();
                 let entries = || drawn.iter().map(|d| d.entries).collect::<Vec<_>>();
                 let fit = match moments {
                     Some(moments) => Some(Fit::known(&moments, target.moments())),
@@ -157,13 +162,30 @@ pub(crate) fn measures(
     [Some(largest), Some(middle), Some(smallest), spin.inertia_ratio(), Some(wobble)]
 }
 
-/// Nutation in degrees after the separation of the scenario with this payload.
-pub(crate) fn nutation(
-    payload: InertiaMatrix,
+/// Nutation in degrees after the separation of the scenario with each of these payloads, which are separated together.
+pub(crate) fn nutations(
+    payloads: impl Iterator<Item = InertiaMatrix>,
     scenario: &Scenario,
-) -> Result<Option<f64>, RunFailure> {
+    go_on: GoOn<'_>,
+) -> Result<Vec<Result<Option<f64>, RunFailure>>, StudyError> {
     let stage = *scenario.stage().nominal().as_inertia_matrix();
-    let separated =
-        scenario.separation().with_inertias(payload, stage)?.run(scenario.settings())?;
-    Ok(separated.spin_metrics(scenario.spin_axis()).nutation().map(f64::to_degrees))
+    let separation = |payload| scenario.separation().with_inertias(payload, stage);
+    let separations: Vec<_> = payloads.map(separation).collect();
+    let places: Vec<usize> = (0..separations.len()).filter(|i| separations[*i].is_ok()).collect();
+    let nutation = |outcome: Outcome| {
+        outcome.spin_metrics(scenario.spin_axis()).nutation().map(f64::to_degrees)
+    };
+    let mut results = vec![Ok(None); separations.len()];
+    // Ends early once somebody wants an end, which is asked again below.
+    let queue = separations.iter().flatten().take_while(|_| go_on().is_ok());
+    Batch::new(*scenario.settings()).run(queue, |i, outcome| {
+        results[places[i]] = outcome.map(nutation).map_err(RunFailure::from);
+    });
+    go_on()?;
+    for (result, refused) in results.iter_mut().zip(separations) {
+        if let Err(refused) = refused {
+            *result = Err(refused.into());
+        }
+    }
+    Ok(results)
 }

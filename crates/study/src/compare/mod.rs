@@ -34,7 +34,7 @@ pub(crate) use section::{EVERY_MODEL, Section};
 
 use crate::{StudyError, scenario::Scenario};
 use body::NominalBody;
-use contest::{Cell, GoOn, measures, nutation};
+use contest::{Cell, GoOn, measures, nutations};
 use measure::Measure;
 use options::{Plan, Size};
 use reference::Target;
@@ -253,7 +253,8 @@ fn level(
 impl BodyResult {
     fn new(body: &NominalBody, scenario: &Scenario, levels: Vec<LevelResult>) -> Self {
         let matrix = *body.inertia().as_inertia_matrix();
-        let nutation = nutation(matrix, scenario).ok().flatten();
+        let nutation = nutations([matrix].into_iter(), scenario, &|| Ok(()));
+        let nutation = nutation.ok().and_then(|mut of_one| of_one.pop()?.ok()?);
         let values = measures(&matrix, scenario).into_iter().chain([nutation]);
         Self {
             name: body.name().to_owned(),
