@@ -4,15 +4,18 @@
 
 use serde::de::{Deserializer, MapAccess, Visitor};
 use serde_json::value::RawValue;
-use std::{borrow::Cow, collections::HashSet, fmt, ops::Range};
+use std::{collections::HashSet, fmt, ops::Range};
 use toml::{
     Spanned,
     de::{DeTable, DeValue},
 };
 
 use crate::{
-    FileBody, FileBodyError, FileProblem, GapKind, MAX_BODIES, MAX_DEPTH, Products,
-    body::{Number, Reading, entry_of, shortened},
+    FileBody, FileProblem, MAX_BODIES, MAX_DEPTH, Products,
+    body::shortened,
+    data_bodies::bodies,
+    data_item::{Item, Value},
+    data_keys::INERTIA,
     error::Refusal,
     gap::Gaps,
     text::Text,
@@ -20,55 +23,6 @@ use crate::{
 
 /// A document is a table of a list of tables of a list of lists of numbers.
 const DEPTH: usize = 6;
-const INERTIA: &str = "inertia_kg_m2";
-
-#[derive(Debug)]
-struct Item<'a> {
-    start: usize,
-    value: Value<'a>,
-}
-
-#[derive(Debug)]
-enum Value<'a> {
-    /// As it is written, and its end.
-    Number(Cow<'a, str>, usize),
-    Text(String),
-    List(Vec<Item<'a>>),
-    Table(Vec<(String, Item<'a>)>),
-    Other,
-}
-
-impl<'a> Item<'a> {
-    fn get(&self, key: &str) -> Option<&Self> {
-        self.entries().iter().find(|(name, _)| name == key).map(|(_, item)| item)
-    }
-
-    fn entries(&self) -> &[(String, Self)] {
-        match &self.value {
-            Value::Table(entries) => entries,
-            _ => &[],
-        }
-    }
-
-    fn items(&self) -> &[Self] {
-        match &self.value {
-            Value::List(items) => items,
-            _ => &[],
-        }
-    }
-
-    fn number(&self, field: &'static str) -> Result<Number, FileBodyError> {
-        match &self.value {
-            Value::Number(raw, end) => {
-                let number = Number::parse(field, raw, Some(self.start))?;
-                let place = number.place.map(|place| crate::body::Place { end: *end, ..place });
-                Ok(Number { place, ..number })
-            }
-            Value::Text(text) => Err(FileBodyError::NotANumber { field, value: shortened(text) }),
-            _ => Err(FileBodyError::Shape { field, allowed: "a number" }),
-        }
-    }
-}
 
 /// Reads a TOML file.
 pub(crate) fn toml(text: &Text, products: Products) -> Result<(Vec<FileBody>, Gaps), Refusal> {
@@ -224,58 +178,6 @@ fn from_json<'a>(text: &'a Text, raw: &'a RawValue, depth: usize) -> Result<Item
     Ok(Item { start, value })
 }
 
-/// The bodies of a document: itself if it has an inertia, its list `bodies` or `body`, itself if it is
-/// a list, and every table in it that has an inertia.
-fn bodies(
-    text: &Text,
-    root: &Item<'_>,
-    all: &[usize],
-    default: Products,
-) -> Result<(Vec<FileBody>, Gaps), Refusal> {
-    let products = match root.get("products") {
-        None => default,
-        Some(item) => products_of(item).map_err(|error| text.malformed(item.start, error))?,
-    };
-    let mut found: Vec<(&str, &Item<'_>)> = Vec::new();
-    let lists = [Some(root), root.get("bodies"), root.get("body")];
-    let mut stated = root.get(INERTIA).is_some();
-    if stated {
-        found.push(("", root));
-    }
-    for list in lists.into_iter().flatten() {
-        for item in list.items() {
-            stated |= item.get(INERTIA).is_some();
-            found.push(("", item));
-        }
-        for (name, item) in list.entries() {
-            if item.get(INERTIA).is_some() {
-                stated = true;
-                found.push((name, item));
-            }
-        }
-    }
-    if !stated {
-        let message = format!("no table in it has a key {INERTIA}");
-        return Err(FileProblem::Unknown { message }.into());
-    }
-    if found.len() > MAX_BODIES {
-        return Err(FileProblem::TooManyBodies.into());
-    }
-    found.sort_by_key(|(_, item)| item.start);
-    let read = found.iter().filter_map(|(_, item)| Some(item.get(INERTIA)?.start));
-    let gaps = elsewhere(text, all, &read.collect());
-    Ok((found.into_iter().map(|(key, item)| body(text, key, item, products)).collect(), gaps))
-}
-
-/// The inertias that stand where the schema has none: those at `all` places that were not `read`.
-fn elsewhere(text: &Text, all: &[usize], read: &HashSet<usize>) -> Gaps {
-    let mut gaps = Gaps::default();
-    for start in all.iter().filter(|start| !read.contains(start)) {
-        gaps.add(GapKind::Misplaced, text.line(*start));
-    }
-    gaps
-}
-
 /// Where the values of the key of an inertia start, however deep they stand.
 fn all_in_toml(root: &DeTable<'_>) -> Vec<usize> {
     let mut found = Vec::new();
@@ -322,69 +224,6 @@ fn all_in_json(source: &str) -> Vec<usize> {
         Some(source.len() - value.len())
     })
     .collect()
-}
-
-fn body(text: &Text, key: &str, item: &Item<'_>, products: Products) -> FileBody {
-    let name = match item.get("name").map(|item| &item.value) {
-        Some(Value::Text(name)) => name.clone(),
-        _ => key.to_owned(),
-    };
-    let inertia = item.get(INERTIA);
-    let line = text.line(inertia.unwrap_or(item).start);
-    let reading = match inertia {
-        Some(inertia) => reading(item, inertia, products),
-        None => Err(FileBodyError::Missing { field: INERTIA }),
-    };
-    FileBody::new(name, line, reading)
-}
-
-/// What a document, or a body in it, says of the products.
-fn products_of(item: &Item<'_>) -> Result<Products, FileBodyError> {
-    let word = match &item.value {
-        Value::Text(word) => Products::parse(word),
-        _ => None,
-    };
-    let allowed = "\"tensor\" or \"integrals\"";
-    word.ok_or(FileBodyError::Shape { field: "products", allowed })
-}
-
-fn reading(
-    item: &Item<'_>,
-    inertia: &Item<'_>,
-    products: Products,
-) -> Result<Reading, FileBodyError> {
-    const SHAPE: FileBodyError = FileBodyError::Shape {
-        field: INERTIA,
-        allowed: "three rows of three numbers, or ixx, iyy, izz, ixy, ixz and iyz",
-    };
-    // What the document says of all, a body may say of itself.
-    let products = item.get("products").map_or(Ok(products), products_of)?;
-    let mass = item.get("mass_kg").map(|mass| mass.number("mass_kg")).transpose()?;
-    if let Value::Table(entries) = &inertia.value {
-        let mut six = [None; 6];
-        for (key, entry) in entries {
-            let index = entry_of(&key.to_lowercase()).ok_or(SHAPE)?;
-            if six[index].replace(entry.number(INERTIA)?).is_some() {
-                return Err(SHAPE);
-            }
-        }
-        let mut all = [Number::default(); 6];
-        for (number, entry) in all.iter_mut().zip(six) {
-            *number = entry.ok_or(SHAPE)?;
-        }
-        return Ok(Reading::of_six(mass, &all, products));
-    }
-    let rows = inertia.items();
-    if rows.len() != 3 || rows.iter().any(|row| row.items().len() != 3) {
-        return Err(SHAPE);
-    }
-    let mut nine = [[Number::default(); 3]; 3];
-    for (numbers, row) in nine.iter_mut().zip(rows) {
-        for (number, entry) in numbers.iter_mut().zip(row.items()) {
-            *number = entry.number(INERTIA)?;
-        }
-    }
-    Ok(Reading::of_nine(mass, &nine, products))
 }
 
 #[cfg(test)]

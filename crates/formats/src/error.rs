@@ -284,6 +284,14 @@ pub enum FileBodyError {
         /// What it may hold.
         allowed: &'static str,
     },
+    /// A key that must be a slip for one of those that are known.
+    #[error("the key {key:?} is not read here: the keys are {allowed}")]
+    Key {
+        /// The key, shortened.
+        key: String,
+        /// Those that are read.
+        allowed: &'static str,
+    },
     /// An attribute that stands for a number where readers look for an element.
     #[error(
         "{field} is an attribute, which SDFormat 1.0 has: readers of the version of this file take \

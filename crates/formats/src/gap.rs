@@ -18,6 +18,8 @@ pub enum GapKind {
     Computed,
     /// Inertias where the format has none.
     Misplaced,
+    /// Keys of bodies that mean nothing here, as files of other programs have.
+    Keys,
 }
 
 /// Parts of one kind that were not read.
@@ -27,7 +29,11 @@ pub struct Gap {
     line: usize,
     count: usize,
     files: Vec<String>,
+    keys: Vec<String>,
 }
+
+/// Keys that are named at most.
+const KEYS: usize = 10;
 
 impl Gap {
     /// Why they were not read.
@@ -54,13 +60,36 @@ impl Gap {
         &self.files
     }
 
+    /// The keys that are not read, each once, in the order of the file.
+    #[must_use]
+    pub fn keys(&self) -> &[String] {
+        &self.keys
+    }
+
+    /// Whether there may be bodies in what was not read.
+    #[must_use]
+    pub fn may_hold_bodies(&self) -> bool {
+        match self.kind {
+            GapKind::Entities
+            | GapKind::Macros
+            | GapKind::Included
+            | GapKind::Computed
+            | GapKind::Misplaced => true,
+            GapKind::Keys => false,
+        }
+    }
+
     /// Whether the file is broken for every reader that is like this one, and not only left out in
     /// part: that what it holds is not known is an error then.
     #[must_use]
     pub fn is_error(&self) -> bool {
         match self.kind {
             GapKind::Entities => true,
-            GapKind::Macros | GapKind::Included | GapKind::Computed | GapKind::Misplaced => false,
+            GapKind::Macros
+            | GapKind::Included
+            | GapKind::Computed
+            | GapKind::Misplaced
+            | GapKind::Keys => false,
         }
     }
 }
@@ -98,6 +127,14 @@ impl fmt::Display for Gap {
                 "{} where this format has none",
                 count("inertia stands", "inertias stand")
             ),
+            GapKind::Keys => {
+                let (named, rest) = self.keys.split_at(self.keys.len().min(KEYS));
+                let named: Vec<String> = named.iter().map(|key| shortened(key)).collect();
+                let is =
+                    if self.keys.len() == 1 { "key of bodies is" } else { "keys of bodies are" };
+                write!(f, "{} {is} not read: {}", self.keys.len(), named.join(", "))?;
+                if rest.is_empty() { Ok(()) } else { write!(f, " and {} more", rest.len()) }
+            }
         }
     }
 }
@@ -119,8 +156,17 @@ impl Gaps {
                 gap.count += 1;
                 gap.files.extend(files);
             }
-            None => self.0.push(Gap { kind, line, count: 1, files: files.collect() }),
+            None => {
+                let (files, keys) = (files.collect(), Vec::new());
+                self.0.push(Gap { kind, line, count: 1, files, keys });
+            }
         }
+    }
+
+    /// Adds keys of bodies that are not read, each once, and the line of the first.
+    pub(crate) fn add_keys(&mut self, line: usize, keys: Vec<String>) {
+        let (kind, count) = (GapKind::Keys, keys.len());
+        self.0.push(Gap { kind, line, count, files: Vec::new(), keys });
     }
 
     /// In the order of their first lines.

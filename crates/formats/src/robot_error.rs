@@ -92,6 +92,7 @@ impl LinkProblem {
                 | FileBodyError::Shape { .. }
                 | FileBodyError::Word { .. }
                 | FileBodyError::Attribute { .. }
+                | FileBodyError::Key { .. }
                 | FileBodyError::Both { .. } => true,
                 FileBodyError::Missing { .. } => false,
             },

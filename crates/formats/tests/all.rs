@@ -5,6 +5,7 @@ mod dressings;
 mod edges;
 mod encodings;
 mod headings;
+mod keys;
 mod mjcf_geoms;
 mod not_known;
 mod places;

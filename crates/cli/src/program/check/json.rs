@@ -20,6 +20,7 @@ struct Document<'a> {
     bodies: Vec<BodyJson<'a>>,
     errors: Vec<ErrorJson>,
     passed_over: Vec<PassedJson<'a>>,
+    unread_keys: Vec<KeysJson<'a>>,
     repairs: Vec<RepairJson<'a>>,
 }
 
@@ -67,6 +68,13 @@ struct PassedJson<'a> {
     line: Option<usize>,
     reason: &'a str,
     may_hold_bodies: bool,
+}
+
+#[derive(Serialize)]
+struct KeysJson<'a> {
+    file: String,
+    line: usize,
+    keys: &'a [String],
 }
 
 #[derive(Serialize)]
@@ -192,6 +200,15 @@ pub(super) fn write(
                 line: passed.line,
                 reason: &passed.reason,
                 may_hold_bodies: passed.may_hold,
+            })
+            .collect(),
+        unread_keys: report
+            .unread_keys
+            .iter()
+            .map(|unread| KeysJson {
+                file: unread.path.display().to_string(),
+                line: unread.line,
+                keys: &unread.keys,
             })
             .collect(),
         repairs: report

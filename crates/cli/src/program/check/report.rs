@@ -104,6 +104,17 @@ pub(super) struct Passed {
     pub(super) may_hold: bool,
 }
 
+/// Keys of the bodies of a file that mean nothing here.
+#[derive(Debug)]
+pub(super) struct UnreadKeys {
+    pub(super) path: PathBuf,
+    /// Of the first.
+    pub(super) line: usize,
+    pub(super) keys: Vec<String>,
+    /// What is said of them.
+    pub(super) text: String,
+}
+
 /// What is said of all files.
 #[derive(Debug, Default)]
 pub(super) struct Report {
@@ -118,6 +129,7 @@ pub(super) struct Report {
     pub(super) findings: Vec<Finding>,
     pub(super) refused: Vec<Refused>,
     pub(super) passed: Vec<Passed>,
+    pub(super) unread_keys: Vec<UnreadKeys>,
     pub(super) repairs: Vec<Repair>,
     pub(super) repair_errors: Vec<(PathBuf, RepairError)>,
 }
@@ -222,6 +234,9 @@ impl Report {
             if gap.is_error() {
                 let message = gap.to_string();
                 self.refused.push(Refused { path: path(), line, message, is_file: true });
+            } else if !gap.may_hold_bodies() {
+                let (line, keys, text) = (gap.line(), gap.keys().to_vec(), gap.to_string());
+                self.unread_keys.push(UnreadKeys { path: path(), line, keys, text });
             } else {
                 let reason = gap.to_string();
                 self.passed.push(Passed { path: path(), line, reason, may_hold: true });

@@ -136,6 +136,7 @@ pub(super) fn write(
         writeln!(out)?;
     }
     passed_over(out, report, arguments)?;
+    unread_keys(out, report, arguments)?;
     for repair in &report.repairs {
         repairs(out, repair)?;
     }
@@ -166,6 +167,21 @@ fn passed_over(out: &mut impl Write, report: &Report, arguments: &CheckArgs) -> 
         writeln!(out, "  and {} more, which --all lists", named.len() - most)?;
     }
     writeln!(out)
+}
+
+/// Keys of bodies that mean nothing here, a line for each file.
+fn unread_keys(out: &mut impl Write, report: &Report, arguments: &CheckArgs) -> io::Result<()> {
+    let unread = &report.unread_keys;
+    let most = if arguments.all { unread.len() } else { PASSED };
+    for unread in unread.iter().take(most) {
+        let at = place(&unread.path, unread.line);
+        writeln!(out, "note: {}: {}", harmless(&at), harmless(&unread.text))?;
+    }
+    if unread.len() > most {
+        let more = unread.len() - most;
+        writeln!(out, "note: and of {}, which --all lists", count(more, "file", "files"))?;
+    }
+    if unread.is_empty() { Ok(()) } else { writeln!(out) }
 }
 
 /// A copy, and what is changed in it: of each body the entries that are others, and how far it is moved.
