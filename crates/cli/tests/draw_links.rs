@@ -135,3 +135,30 @@ fn no_warning_of_a_link_is_left_out() {
         |line: &str| line.starts_with("         also for b (K2: ") && line.contains("; K3: ");
     assert!(told.lines().any(others), "{told}");
 }
+
+/// What a robot has of inertias where its format has none, and of two shapes where it has one.
+#[test]
+fn what_is_not_drawn_and_what_is_twice_is_told() {
+    let shell = Scratch::new();
+    let inertial = "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial>";
+    let shapes = "<box size='9 9 9'/><sphere radius='9'/>";
+    let robot = |of_link: &str| {
+        let link = format!(
+            "<link name='a'>{of_link}<collision><geometry>{shapes}</geometry></collision></link>"
+        );
+        format!("<robot name='a'>\n{link}\n<sensor>{inertial}</sensor></robot>")
+    };
+    fs::write(shell.path("a.urdf"), robot(inertial)).unwrap();
+    let stated = ["draw", "a.urdf", "-n", "2", "--mass", "5%"];
+    let table = shell.run(&stated);
+    let robots = shell.run(&[&stated[..], &["-o", "robots"]].concat());
+    for told in [&table.stderr, &robots.stdout].map(|said| String::from_utf8_lossy(said)) {
+        let line = "not drawn: a.urdf:3: 1 inertia stands where this format has none";
+        assert!(told.lines().any(|said| said == line), "{told}");
+    }
+    let message = refused(&shell, &[&stated[1..], &["--inside", "box"]].concat());
+    assert!(message.contains("holds a <box> and a <sphere>: there must be one shape"), "{message}");
+    fs::write(shell.path("a.urdf"), robot("")).unwrap();
+    let message = refused(&shell, &stated[1..]);
+    assert!(message.contains("line 3: 1 inertia stands where this format has none"), "{message}");
+}

@@ -128,6 +128,9 @@ pub enum FileProblem {
         /// Its name.
         format: &'static str,
     },
+    /// A compressed file, or an archive of files.
+    #[error("it is compressed, or an archive of files: expand it first")]
+    Compressed,
     /// A file from which a program makes one that could be read.
     #[error("it is a template: expand it first")]
     Template,
@@ -300,6 +303,12 @@ pub enum FileBodyError {
     Attribute {
         /// The field.
         field: &'static str,
+    },
+    /// An element that stands more than once where it may stand once.
+    #[error("there is more than one <{element}>: there must be one")]
+    Several {
+        /// The element.
+        element: &'static str,
     },
     /// Two fields that exclude each other.
     #[error("both {first} and {second} are given: there must be one of them")]

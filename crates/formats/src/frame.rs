@@ -162,7 +162,7 @@ pub(crate) fn with_quaternions(node: Node<'_, '_>) -> Result<(), LinkProblem> {
 }
 
 fn urdf(node: Node<'_, '_>) -> Result<Frame, LinkProblem> {
-    let origin = node.child("origin");
+    let origin = node.only_child("origin")?;
     let numbers = |name| origin.and_then(|origin| origin.numbers(name, 3)).transpose();
     let (xyz, rpy) = (numbers("xyz")?, numbers("rpy")?);
     let quaternion = origin.and_then(|origin| origin.numbers("quat_xyzw", 4)).transpose()?;
@@ -245,7 +245,7 @@ fn mjcf(node: Node<'_, '_>, angles: &Angles) -> Result<Frame, LinkProblem> {
 }
 
 fn sdf(node: Node<'_, '_>) -> Result<Frame, LinkProblem> {
-    let pose = node.child("pose");
+    let pose = node.only_child("pose")?;
     if let Some(pose) = pose {
         // The link's own frame may be named, too.
         let own = node.parent().and_then(|link| link.attribute("name")).unwrap_or_default();
@@ -256,7 +256,8 @@ fn sdf(node: Node<'_, '_>) -> Result<Frame, LinkProblem> {
             }
         }
     }
-    let origin = node.child("origin").and_then(|origin| origin.numbers("pose", 6)).transpose()?;
+    let origin = node.only_child("origin")?;
+    let origin = origin.and_then(|origin| origin.numbers("pose", 6)).transpose()?;
     if origin.is_some() && !has_attributes(node) {
         return Err(FileBodyError::Attribute { field: "pose of origin" }.into());
     }

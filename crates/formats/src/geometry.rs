@@ -5,6 +5,7 @@ use std::path::Path;
 
 use crate::{
     FileBodyError, Format, LinkProblem,
+    body::shortened,
     frame::{self, Frame},
     mesh_file::{self, MeshFileError},
     orientation::Angles,
@@ -78,12 +79,18 @@ pub(crate) fn of(
 
 fn solid(around: Node<'_, '_>, format: Format, angles: &Angles) -> Result<Solid, GeometryProblem> {
     let Frame { centre, rotation, .. } = frame::of(around, format, angles)?;
-    let shape = around.child("geometry").and_then(|geometry| geometry.children().next());
+    let geometry = around.only_child("geometry").map_err(LinkProblem::from)?;
+    let mut shapes = geometry.into_iter().flat_map(Node::children);
     let empty = || GeometryProblem::Empty { element: around.name().to_owned() };
-    let shape = shape.ok_or_else(empty)?;
+    let shape = shapes.next().ok_or_else(empty)?;
+    if let Some(second) = shapes.next() {
+        let [first, second] = [shape, second].map(|shape| shortened(shape.name()));
+        return Err(GeometryProblem::Several { first, second });
+    }
     // Attributes in URDF, elements in SDF.
     let list = |name: &'static str, allowed: usize| -> Result<Vec<f64>, GeometryProblem> {
-        let numbers = match (shape.numbers(name, allowed), shape.child(name)) {
+        let element = shape.only_child(name).map_err(LinkProblem::from)?;
+        let numbers = match (shape.numbers(name, allowed), element) {
             (Some(numbers), _) => numbers,
             (None, Some(element)) => element.numbers_inside(name, allowed),
             (None, None) => Err(FileBodyError::Missing { field: name }),
@@ -117,7 +124,7 @@ fn solid(around: Node<'_, '_>, format: Format, angles: &Angles) -> Result<Solid,
             let is_scaled = shape.attribute("scale").is_some() || shape.child("scale").is_some();
             Shape::Mesh { path, scale: if is_scaled { three("scale")? } else { [1.0; 3] } }
         }
-        other => return Err(GeometryProblem::Shape { shape: crate::body::shortened(other) }),
+        other => return Err(GeometryProblem::Shape { shape: shortened(other) }),
     };
     Ok(Solid::new(centre, rotation, shape))
 }
@@ -187,6 +194,14 @@ pub enum GeometryProblem {
     Empty {
         /// The element.
         element: String,
+    },
+    /// More than one shape where the format has one.
+    #[error("its <geometry> holds a <{first}> and a <{second}>: there must be one shape in it")]
+    Several {
+        /// The first shape.
+        first: String,
+        /// The second.
+        second: String,
     },
     /// A body of MJCF without geoms of its own.
     #[error("it has no geom")]

@@ -52,6 +52,11 @@ const NOT_READ: [(&str, &str); 7] = [
 /// Extensions of templates, after one of those that are read: `rover.sdf.jinja`.
 const TEMPLATES: [&str; 6] = ["jinja", "jinja2", "j2", "erb", "em", "in"];
 
+/// Extensions of compressed files, after one that may hold inertias or is an archive: `robot.urdf.gz`, `robots.tar.gz`.
+const COMPRESSED: [&str; 6] = ["gz", "bz2", "xz", "zst", "lz4", "z"];
+/// Extensions of archives, which may hold anything.
+const ARCHIVES: [&str; 7] = ["zip", "7z", "rar", "tar", "tgz", "tbz2", "txz"];
+
 fn extension(path: &Path) -> Option<&str> {
     path.extension()?.to_str()
 }
@@ -77,6 +82,15 @@ pub(crate) fn not_read(path: &Path) -> Option<FileProblem> {
         && path.file_stem().is_some_and(|stem| known_extension(Path::new(stem)).is_some())
     {
         return Some(FileProblem::Template);
+    }
+    let is_in = |all: &[&str], extension: &str| all.iter().any(|e| e.eq_ignore_ascii_case(extension));
+    let is_compressed = is_in(&COMPRESSED, extension)
+        && path.file_stem().map(Path::new).is_some_and(|stem| {
+            known_extension(stem).is_some()
+                || not_read(stem).is_some_and(|problem| !matches!(problem, FileProblem::Template))
+        });
+    if is_compressed || is_in(&ARCHIVES, extension) {
+        return Some(FileProblem::Compressed);
     }
     let known = NOT_READ.iter().find(|(known, _)| known.eq_ignore_ascii_case(extension))?;
     Some(FileProblem::NotRead { format: known.1 })

@@ -166,7 +166,13 @@ impl RobotFile {
             Some("csv" | "toml" | "json") => false,
             Some(_) => true,
             // What is said of a robot in a format that is not read is why it is not.
-            None if matches!(not_read(path), Some(FileProblem::NotRead { .. })) => true,
+            None if matches!(
+                not_read(path),
+                Some(FileProblem::NotRead { .. } | FileProblem::Compressed)
+            ) =>
+            {
+                true
+            }
             None => begins
                 .strip_prefix(b"\xef\xbb\xbf")
                 .unwrap_or(begins)

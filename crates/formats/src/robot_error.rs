@@ -93,6 +93,7 @@ impl LinkProblem {
                 | FileBodyError::Word { .. }
                 | FileBodyError::Attribute { .. }
                 | FileBodyError::Key { .. }
+                | FileBodyError::Several { .. }
                 | FileBodyError::Both { .. } => true,
                 FileBodyError::Missing { .. } => false,
             },

@@ -178,9 +178,9 @@ fn is_stray(node: Node<'_, '_>) -> bool {
 /// matter here.
 fn urdf(inertial: Node<'_, '_>, products: Products) -> Result<Reading, FileBodyError> {
     let missing = |field| FileBodyError::Missing { field };
-    let mass = inertial.child("mass").ok_or(missing("mass"))?;
+    let mass = inertial.only_child("mass")?.ok_or(missing("mass"))?;
     let mass = mass.number("value", "mass").ok_or(missing("mass value"))??;
-    let inertia = inertial.child("inertia").ok_or(missing("inertia"))?;
+    let inertia = inertial.only_child("inertia")?.ok_or(missing("inertia"))?;
     let mut six = [Number::default(); 6];
     for (number, name) in six.iter_mut().zip(NAMES) {
         *number = inertia.number(name, name).ok_or(missing(name))??;
@@ -220,7 +220,7 @@ fn sdf(inertial: Node<'_, '_>, products: Products) -> Result<Reading, FileBodyEr
     const SHAPE: FileBodyError =
         FileBodyError::Shape { field: "inertia", allowed: "ixx, iyy, izz, ixy, ixz and iyz in it" };
     let allowed = has_attributes(inertial);
-    let entry = |node: Node<'_, '_>, name| match (node.number(name, name), node.child(name)) {
+    let entry = |node: Node<'_, '_>, name| match (node.number(name, name), node.only_child(name)?) {
         (Some(_), Some(_)) => {
             Err(FileBodyError::Both { first: "an attribute", second: "an element" })
         }
@@ -235,7 +235,7 @@ fn sdf(inertial: Node<'_, '_>, products: Products) -> Result<Reading, FileBodyEr
             return Err(FileBodyError::Missing { field: near });
         }
     }
-    let inertia = inertial.child("inertia");
+    let inertia = inertial.only_child("inertia")?;
     if inertia.is_some_and(|inertia| {
         inertia.has_text() || names_in(inertia).any(|name| !NAMES.contains(&name))
     }) {

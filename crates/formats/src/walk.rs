@@ -27,8 +27,8 @@ pub struct Found {
 ///
 /// In folders, hidden names, repaired copies, links to folders and folders that call themselves
 /// caches (`CACHEDIR.TAG`, like Cargo's `target`) are passed over. Files of formats that may hold
-/// inertias and are not read are found as well, so that they can be named. A folder without any
-/// file is an error.
+/// inertias and are not read, compressed files and archives, and links that lead nowhere are found as well, so that they
+/// can be named. A folder without any file is an error.
 #[must_use]
 pub fn find(paths: &[PathBuf]) -> (Vec<Found>, Vec<FileError>) {
     let mut found = Vec::new();
@@ -74,8 +74,14 @@ fn is_taken(entry: &DirEntry) -> bool {
         !path.join("CACHEDIR.TAG").exists()
     } else {
         // A link to a folder, whatever its name, is none of these.
-        is_wanted(path) && !path.is_dir()
+        (is_wanted(path) || is_lost(entry)) && !path.is_dir()
     }
+}
+
+/// Whether an entry is a link that leads nowhere, and would lead to a file that may hold inertias.
+fn is_lost(entry: &DirEntry) -> bool {
+    let path = entry.path();
+    entry.path_is_symlink() && !path.exists() && fs::read_link(path).is_ok_and(|to| is_wanted(&to))
 }
 
 fn walk(folder: &Path, found: &mut Vec<Found>, errors: &mut Vec<FileError>, seen: &mut Seen) {
@@ -149,8 +155,8 @@ mod tests {
         fn trees_are_walked_whole(
             tree in prop::collection::btree_set(
                 (
-                    prop::collection::vec(select(&["a", "B.urdf", "a b", ".git", "c.d", "a.csv.d"][..]), 0..4),
-                    select(&["x.urdf", "X.SDF", "z.csv", "CACHEDIR.TAG", "z.repaired.csv", "t.txt", ".x.urdf", "hand.USDA"][..]),
+                    prop::collection::vec(select(&["a", "B.urdf", "a b", ".git", "c.d", "a.csv.gz"][..]), 0..4),
+                    select(&["x.urdf", "X.SDF", "z.csv", "CACHEDIR.TAG", "z.repaired.csv", "t.txt", ".x.urdf", "hand.USDA", "x.urdf.gz", "p.csv.XZ", "t.txt.gz", "a.usd.bz2", "all.Zip", "r.tar.gz"][..]),
                 ),
                 1..20,
             ),
@@ -167,7 +173,7 @@ mod tests {
             };
             let expected = tree.iter().filter(|(folders, name)| {
                 let passed_over = folders.contains(&".git") || (1..=folders.len()).any(|n| is_cache(&folders[..n]));
-                !passed_over && ["x.urdf", "X.SDF", "z.csv", "hand.USDA"].contains(name)
+                !passed_over && ["x.urdf", "X.SDF", "z.csv", "hand.USDA", "x.urdf.gz", "p.csv.XZ", "a.usd.bz2", "all.Zip", "r.tar.gz"].contains(name)
             });
             let mut expected: Vec<PathBuf> =
                 expected.map(|(folders, name)| root.join(folders.join("/")).join(name)).collect();
@@ -191,8 +197,11 @@ mod tests {
         symlink(root.join("a/robot.urdf"), root.join("same.urdf")).unwrap();
         symlink(root.join("gone"), root.join("dangling.urdf")).unwrap();
         symlink("self.urdf", root.join("self.urdf")).unwrap();
+        symlink("gone.urdf", root.join("latest")).unwrap();
+        symlink("gone.txt", root.join("notes")).unwrap();
+        symlink("a/robot.urdf", root.join("current")).unwrap();
         let (found, errors) = find(&[root.to_owned()]);
         assert!(errors.is_empty());
-        assert_eq!(names(&found, root), ["a/robot.urdf", "dangling.urdf", "self.urdf"]);
+        assert_eq!(names(&found, root), ["a/robot.urdf", "dangling.urdf", "latest", "self.urdf"]);
     }
 }

@@ -295,6 +295,14 @@ impl<'t, 'a> Node<'t, 'a> {
         named().find(|node| node.prefix() == self.prefix()).or_else(|| named().next())
     }
 
+    /// As [`child`](Self::child), where the format has one at most: readers of files with two do not agree which counts.
+    pub(crate) fn only_child(self, name: &'static str) -> Result<Option<Self>, FileBodyError> {
+        let child = self.child(name);
+        let like = |node: &Self| child.is_some_and(|child| child.prefix() == node.prefix());
+        let count = self.children().filter(|node| node.name() == name).filter(like).count();
+        if count > 1 { Err(FileBodyError::Several { element: name }) } else { Ok(child) }
+    }
+
     /// This element and those around it, from the inside.
     pub(crate) fn ancestors(self) -> impl Iterator<Item = Self> {
         std::iter::successors(Some(self), |node| node.parent())

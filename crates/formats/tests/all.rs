@@ -12,6 +12,7 @@ mod places;
 mod quotes;
 mod robots;
 mod samples;
+mod several;
 mod slips;
 mod ten;
 mod units;

@@ -66,9 +66,9 @@ fn unread(gap: &Gap) -> Option<String> {
             let text = "macros or expressions are not expanded: expand the file first, with `xacro file.xacro -o file.urdf`";
             Some(text.to_owned())
         }
-        GapKind::Entities | GapKind::Included => Some(gap.to_string()),
+        GapKind::Entities | GapKind::Included | GapKind::Misplaced => Some(gap.to_string()),
         // Links of which the simulator computes the inertia are among those without.
-        GapKind::Computed | GapKind::Misplaced => None,
+        GapKind::Computed => None,
         // The enum may grow.
         _ => Some(gap.to_string()),
     }

@@ -1,7 +1,7 @@
 //! `gyradius draw robot.urdf`: robots with other mass properties, or a table of these.
 
 use gyradius_estimation::StatementWarning;
-use gyradius_formats::{GapKind, NewFile, RobotFile};
+use gyradius_formats::{NewFile, RobotFile};
 use gyradius_study::{
     CampaignError, LinkSummary, RobotDraw, RobotDrawError, RobotDrawOptions, RobotFolder,
     TableFormat,
@@ -235,7 +235,7 @@ fn left_as_they_are(robot: &RobotFile, draw: &RobotDraw<'_>) -> String {
             taken.join(" and ")
         );
     }
-    for gap in robot.gaps().iter().filter(|gap| gap.kind() != GapKind::Misplaced) {
+    for gap in robot.gaps() {
         out += &format!("not drawn: {}:{}: {gap}\n", robot.path().display(), gap.line());
     }
     for doubt in robot.compiler_doubts() {

@@ -9,7 +9,8 @@ mod table;
 use gyradius_campaign::{CampaignError, FormatError, Streams, TableError};
 use gyradius_estimation::{StatedBody, StatementError, Statements};
 use gyradius_formats::{
-    Format, GapKind, LinkProblem, RobotError, RobotFile, RobotLink, TOLERANCE, WriteError, judge,
+    Format, Gap, GapKind, LinkProblem, RobotError, RobotFile, RobotLink, TOLERANCE, WriteError,
+    judge,
 };
 use gyradius_inertia::{
     Containment, Inertia, InertiaMatrix, MassProperties, Region, Repair, RepairMethod,
@@ -190,13 +191,20 @@ impl<'a> RobotDraw<'a> {
         let without = robot.links_without_inertia().iter();
         left.extend(without.map(|name| (name.clone(), LeftBecause::NoInertia)));
         if links.is_empty() {
-            // What can be mended is told before links without an inertia: macros that are to be expanded, and numbers that cannot be read.
-            let macros = robot.gaps().iter().find(|gap| gap.kind() == GapKind::Macros);
+            // What can be mended is told before links without an inertia: macros that are to be expanded, numbers that cannot be read,
+            // and inertias that stand where none is read.
+            let gap = |kind| robot.gaps().iter().find(move |gap| gap.kind() == kind);
+            let (macros, misplaced) = (gap(GapKind::Macros), gap(GapKind::Misplaced));
             let mut picked = left.iter().filter(|(_, why)| *why != LeftBecause::NotPicked);
             let is_problem = |(_, why): &&(_, _)| matches!(why, LeftBecause::Problem(_));
-            let link = picked.clone().find(is_problem).or_else(|| picked.next());
-            let of_link = || link.map(|(name, why)| format!(": \"{name}\": {why}"));
-            let why = macros.map(|gap| format!(": {gap}")).or_else(of_link).unwrap_or_default();
+            let told = |(name, why): &(String, LeftBecause)| format!(": \"{name}\": {why}");
+            let of_gap = |gap: &Gap| format!(": line {}: {gap}", gap.line());
+            let why = macros
+                .map(|gap| format!(": {gap}"))
+                .or_else(|| picked.clone().find(is_problem).map(told))
+                .or_else(|| misplaced.map(of_gap))
+                .or_else(|| picked.next().map(told))
+                .unwrap_or_default();
             return Err(RobotDrawError::Nothing { format: robot.format(), why });
         }
         Ok(Self { robot, links, left, options })
