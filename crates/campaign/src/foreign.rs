@@ -1,11 +1,12 @@
 //! Tables of numbers that other programs wrote, a row for each run: Parquet, a folder of Parquet files, or CSV.
 
 mod of_csv;
+mod of_folder;
 mod of_parquet;
+mod reason;
 mod twice;
 
 use std::{
-    collections::BTreeMap,
     fs::{self, File},
     io::{self, Read},
     path::{Path, PathBuf},
@@ -13,6 +14,7 @@ use std::{
 };
 
 use of_csv::{CsvText, csv_columns, scan_csv};
+use of_folder::{Folder, NOT_REGULAR, PARQUET, has_parquet_name};
 use of_parquet::{parquet_columns, scan_parquet};
 pub use twice::TwiceError;
 
@@ -20,14 +22,14 @@ use crate::{column::Column, kept::Rows, origin::Origin, requirement::Counting};
 
 /// Bytes of a table that is held in memory, at most.
 const MOST_HELD: u64 = 1 << 30;
-/// What a Parquet file begins with.
-const PARQUET: &[u8] = b"PAR1";
 
 /// A table of numbers that another program wrote, a row for each run. It is read piece by piece, as often as it is scanned.
 #[derive(Clone, Debug)]
 pub struct ForeignTable {
     path: PathBuf,
     files: Vec<PathBuf>,
+    /// What stands beside the files of a folder and may be a table, too.
+    beside: Vec<PathBuf>,
     form: Form,
     columns: Vec<String>,
     /// What the folder of the campaign that wrote it says of it, if it is in one.
@@ -58,10 +60,13 @@ enum Form {
     },
 }
 
-/// The folder in which Delta Lake keeps which files of a table are in force.
-const DELTA_LOG: &str = "_delta_log";
-
-const NOT_REGULAR: &str = "it is not a regular file";
+/// What is known of the column that says whether a run ended.
+#[derive(Clone, Copy, Debug)]
+struct StatusOf {
+    is_there: bool,
+    /// A study wrote it, whose reasons may be any words.
+    of_study: bool,
+}
 
 /// The numbers of some consecutive rows: of each column, one for each row, none where a cell is empty.
 pub type Columns = [Vec<Option<f64>>];
@@ -79,40 +84,7 @@ impl ForeignTable {
         let found = found.map_err(|error| failed(Origin::why_none(path, error.to_string())))?;
         let origin = || Origin::of(path).map_err(unread);
         if found.is_dir() {
-            let (mut files, mut folders) = (Vec::new(), Vec::new());
-            for entry in fs::read_dir(path).map_err(unread)? {
-                let there = entry.map_err(unread)?.path();
-                if is_hidden(&there) {
-                    continue;
-                }
-                // What cannot be looked at, such as a link to a disk that is away, may be a table, or a folder of tables.
-                let found = fs::metadata(&there);
-                let found = found.map_err(|error| ForeignError::new(&there, error.to_string()))?;
-                if found.is_dir() {
-                    folders.push(there);
-                } else if has_parquet_name(&there) {
-                    if !found.is_file() {
-                        return Err(ForeignError::new(&there, NOT_REGULAR));
-                    }
-                    files.push(there);
-                }
-            }
-            files.sort();
-            folders.sort();
-            apart(&files)?;
-            if folders.iter().any(|folder| folder.ends_with(DELTA_LOG)) {
-                let problem = "it is a Delta table: which of its files hold rows that count stands in _delta_log, which is not read: write \
-                               its rows to a file";
-                return Err(failed(problem.to_owned()));
-            }
-            for folder in folders.iter().filter(|_| !files.is_empty()) {
-                if holds_parquet(folder)? {
-                    let below = folder.file_name().unwrap_or_default().display();
-                    return Err(failed(format!(
-                        "beside its files it has the folder {below} with Parquet files, which would not be read: judge one folder at a time, or put all files into one"
-                    )));
-                }
-            }
+            let Folder { files, beside } = Folder::read(path)?;
             let none = || {
                 let problem = "it has no .parquet file; the run tables of a study are in runs/ below its folder, a folder for \
                                each model";
@@ -120,7 +92,8 @@ impl ForeignTable {
             };
             let first = files.first().ok_or_else(none)?;
             let columns = parquet_columns(first)?;
-            return Ok(Self::new(path, files, (Form::Parquet, columns), origin()?));
+            let table = Self::new(path, files, (Form::Parquet, columns), origin()?);
+            return Ok(Self { beside, ..table });
         }
         if !found.is_file() {
             // A pipe has an end only once, and is scanned more often.
@@ -177,7 +150,14 @@ impl ForeignTable {
         origin: Option<Origin>,
     ) -> Self {
         let counting = origin.as_ref().map(|origin| origin.counting).unwrap_or_default();
-        Self { path: path.to_owned(), files, form, columns, origin, counting }
+        let (path, beside) = (path.to_owned(), Vec::new());
+        Self { path, files, beside, form, columns, origin, counting }
+    }
+
+    /// Files beside those of a folder that may be tables, too, and are not read: CSV, JSON Lines, spreadsheets and the like.
+    #[must_use]
+    pub fn beside(&self) -> &[PathBuf] {
+        &self.beside
     }
 
     /// That it holds the rows of all runs, as they were written, as far as it is known.
@@ -274,7 +254,7 @@ impl ForeignTable {
     /// drawn.
     ///
     /// # Errors
-    /// It has no such column, a cell in it is no number, or a file cannot be read.
+    /// It has no such column, a cell in it is no number, a status is neither `ok` nor a reason, or a file cannot be read.
     pub fn scan(&self, columns: &[String], look: impl FnMut(&Columns)) -> Result<(), ForeignError> {
         self.scan_beside(columns, &[], look)
     }
@@ -290,9 +270,10 @@ impl ForeignTable {
         mut look: impl FnMut(&Columns),
     ) -> Result<(), ForeignError> {
         let columns = (measured, written);
+        let status = StatusOf { is_there: self.is_run_table(), of_study: self.origin.is_some() };
         for file in &self.files {
             match &self.form {
-                Form::Parquet => scan_parquet(file, columns, self.is_run_table(), &mut look)?,
+                Form::Parquet => scan_parquet(file, columns, status, &mut look)?,
                 Form::Csv { separator, text } => {
                     let form = (*separator, self.columns.len());
                     scan_csv(file, text, form, columns, &mut look)?;
@@ -301,51 +282,6 @@ impl ForeignTable {
         }
         Ok(())
     }
-}
-
-/// Whether a file is called as Parquet files are.
-fn has_parquet_name(path: &Path) -> bool {
-    let is = |end: &str| path.extension().is_some_and(|own| own.eq_ignore_ascii_case(end));
-    is("parquet") || is("pq")
-}
-
-/// What is hidden is of programs, such as copies of a file that is being written.
-fn is_hidden(path: &Path) -> bool {
-    path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."))
-}
-
-/// Whether a folder has Parquet files, at any depth.
-fn holds_parquet(folder: &Path) -> Result<bool, ForeignError> {
-    for entry in walkdir::WalkDir::new(folder).follow_links(true) {
-        let entry = match entry {
-            // A link to a folder that it is in, which is looked at already.
-            Err(error) if error.loop_ancestor().is_some() => continue,
-            Err(error) => {
-                let path = error.path().unwrap_or(folder).to_owned();
-                return Err(ForeignError::new(&path, io::Error::from(error).to_string()));
-            }
-            Ok(entry) => entry,
-        };
-        if !entry.file_type().is_dir() && has_parquet_name(entry.path()) && !is_hidden(entry.path())
-        {
-            return Ok(true);
-        }
-    }
-    Ok(false)
-}
-
-/// That no file is there twice, by links.
-fn apart(files: &[PathBuf]) -> Result<(), ForeignError> {
-    let mut seen: BTreeMap<PathBuf, &Path> = BTreeMap::new();
-    for file in files {
-        let whole =
-            fs::canonicalize(file).map_err(|error| ForeignError::new(file, error.to_string()))?;
-        if let Some(other) = seen.insert(whole, file) {
-            let problem = format!("it is the file {} again, and rows count once", other.display());
-            return Err(ForeignError::new(file, problem));
-        }
-    }
-    Ok(())
 }
 
 /// Where columns are among those that there are.

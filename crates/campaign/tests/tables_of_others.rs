@@ -296,3 +296,131 @@ fn what_cannot_be_reached_is_refused_and_never_passed_over() {
     let refused = rows().unwrap_err().to_string();
     assert!(refused.starts_with(&folder.join("more/c.parquet").display().to_string()), "{refused}");
 }
+
+/// Rows in files of other names were passed over, and the others judged without a word.
+#[test]
+fn what_stands_beside_the_files_of_a_folder_is_refused_or_named() {
+    let scratch = scratch();
+    let folder = scratch.path().join("runs");
+    fs::create_dir(&folder).unwrap();
+    let mut table = Table::new("m", 0, vec![Column::number("x", "1", "a number")]).unwrap();
+    table.push(None, [Cell::Number(1.0)]).unwrap();
+    let mut parquet = Vec::new();
+    table.write_parquet(&mut parquet).unwrap();
+    fs::write(folder.join("a.parquet"), &parquet).unwrap();
+    for (name, is_parquet, refused) in [
+        ("b.parq", true, "called neither .parquet nor .pq"),
+        ("b.PARQ", false, "called neither .parquet nor .pq"),
+        ("b", true, "called neither .parquet nor .pq"),
+        ("b.parquet.bak", true, "called neither .parquet nor .pq"),
+        ("b.csv", true, "called neither .parquet nor .pq"),
+        ("b.parquet.gz", false, "a compressed Parquet file"),
+        ("b.pq.ZST", false, "a compressed Parquet file"),
+        ("b.parq.zip", false, "a compressed Parquet file"),
+        ("b.csv", false, ""),
+        ("b.CSV.gz", false, ""),
+        ("b.tsv", false, ""),
+        ("b.jsonl", false, ""),
+        ("b.npy", false, ""),
+        ("b.feather", false, ""),
+        ("b.xlsx", false, ""),
+        ("b.h5", false, ""),
+        ("_metadata", true, "-"),
+        (".b.parq", true, "-"),
+        (".b.csv", false, "-"),
+        ("b.parquet.md5", false, "-"),
+        ("README.txt", false, "-"),
+        ("b.svg", false, "-"),
+        ("b.txt.gz", false, "-"),
+        ("b.json", false, "-"),
+    ] {
+        let path = folder.join(name);
+        fs::write(&path, if is_parquet { &parquet[..] } else { b"run,x\n1,1\n" }).unwrap();
+        let opened = ForeignTable::open(&folder);
+        match refused {
+            "" => assert_eq!(opened.unwrap().beside(), std::slice::from_ref(&path), "{name}"),
+            "-" => assert!(opened.unwrap().beside().is_empty(), "{name}"),
+            told => {
+                let said = opened.unwrap_err().to_string();
+                assert!(
+                    said.starts_with(&path.display().to_string()) && said.contains(told),
+                    "{said}"
+                );
+            }
+        }
+        fs::remove_file(path).unwrap();
+    }
+    fs::create_dir(folder.join("more")).unwrap();
+    fs::write(folder.join("more/b.parquet.gz"), "").unwrap();
+    let said = ForeignTable::open(&folder).unwrap_err().to_string();
+    assert!(said.contains("it has the folder more with Parquet files"), "{said}");
+}
+
+/// What other programs write of a run that ended well was counted as a failure.
+#[test]
+fn a_status_is_ok_or_a_reason_or_refused() {
+    const STATUSES: [(&str, Option<bool>); 16] = [
+        ("ok", Some(true)),
+        ("no contact", Some(false)),
+        ("simulator: 404", Some(false)),
+        ("failed", Some(false)),
+        ("not ok", Some(false)),
+        ("OK", None),
+        ("Ok.", None),
+        ("success", None),
+        ("Converged", None),
+        ("DONE", None),
+        ("0", None),
+        ("1", None),
+        ("true", None),
+        ("", None),
+        ("nan", None),
+        ("None", None),
+    ];
+    let scratch = scratch();
+    let path = scratch.path().join("it.parquet");
+    // Every pair of words, so that each stands in each row.
+    for (first, of_first) in STATUSES {
+        for (second, of_second) in STATUSES {
+            let csv = format!("x,run,model,Status\n1,0,a,{first}\n1,1,a,\"{second}\"\n");
+            write(
+                &path,
+                &[
+                    ("model", Physical::BYTE_ARRAY, ConvertedType::UTF8, &["a"; 2]),
+                    ("run", Physical::INT64, ConvertedType::NONE, &["0", "1"]),
+                    ("x", Physical::DOUBLE, ConvertedType::NONE, &["1"; 2]),
+                    ("Status", Physical::BYTE_ARRAY, ConvertedType::UTF8, &[first, second]),
+                ],
+            );
+            let requirement: [Requirement; 1] = ["x <= 3 in 60 % at 80 %".parse().unwrap()];
+            let of_csv = ForeignTable::read_csv("it.csv".as_ref(), csv.as_bytes()).unwrap();
+            let of_file = ForeignTable::open(&path).unwrap();
+            for (table, [one, other]) in
+                [(of_csv, ["line 2,", "line 3,"]), (of_file, ["row 0,", "row 1,"])]
+            {
+                let judged = Judgement::of_table(&requirement, &table);
+                match (judged, of_first, of_second) {
+                    (Ok(judged), Some(first), Some(second)) => {
+                        let failures = u64::from(!first) + u64::from(!second);
+                        assert_eq!((judged[0].runs(), judged[0].failures()), (2, failures));
+                    }
+                    (Err(error), ..) => {
+                        let said = error.to_string();
+                        let (word, place) =
+                            if of_first.is_none() { (first, one) } else { (second, other) };
+                        assert!(of_first.is_none() || of_second.is_none(), "{said}");
+                        let told = format!("{word:?}, which does not say whether the run ended");
+                        assert!(
+                            said.contains(&told)
+                                && said.contains(place)
+                                && said.contains("\"Status\"")
+                                && said.contains("it must be \"ok\""),
+                            "{said}"
+                        );
+                    }
+                    (Ok(_), ..) => panic!("{first:?}, {second:?} were judged"),
+                }
+            }
+        }
+    }
+}

@@ -83,7 +83,8 @@ pub(crate) fn not_read(path: &Path) -> Option<FileProblem> {
     {
         return Some(FileProblem::Template);
     }
-    let is_in = |all: &[&str], extension: &str| all.iter().any(|e| e.eq_ignore_ascii_case(extension));
+    let is_in =
+        |all: &[&str], extension: &str| all.iter().any(|e| e.eq_ignore_ascii_case(extension));
     let is_compressed = is_in(&COMPRESSED, extension)
         && path.file_stem().map(Path::new).is_some_and(|stem| {
             known_extension(stem).is_some()

@@ -2,7 +2,7 @@
 
 use gyradius_campaign::{Column, Counting, ForeignError, ForeignTable, Kind, Spans};
 use serde::{Deserialize, Serialize};
-use std::{borrow::Cow, fmt};
+use std::{borrow::Cow, collections::BTreeSet, fmt};
 
 /// Vehicles, each of which flies so many times.
 ///
@@ -75,6 +75,7 @@ impl Fleet {
                              independent of each other, which flights of one vehicle need not be";
         let [vehicle, flight] = Self::columns().map(|column| column.name().to_owned());
         let names = [Column::RUN.to_owned(), vehicle, flight];
+        again(&table)?;
         let of_vehicles = |name: &&String| name.trim().eq_ignore_ascii_case(&names[1]);
         let Some(vehicles) = table.columns().iter().find(of_vehicles) else {
             return Ok((table, None));
@@ -131,6 +132,55 @@ impl Fleet {
     pub fn run(self, vehicle: u64, flight: u64) -> Option<u64> {
         let there = vehicle < self.vehicles && flight < self.flights;
         there.then(|| vehicle * self.flights + flight)
+    }
+}
+
+/// That no flight stands twice in a table without a column `model`, which names its rows by their run, vehicle and flight. Of one with a model, judging
+/// tells.
+fn again(table: &ForeignTable) -> Result<(), ForeignError> {
+    let named = |own: &str| {
+        let mut alike = table.columns().iter().filter(|name| name.trim().eq_ignore_ascii_case(own));
+        alike.next().filter(|_| alike.next().is_none()).cloned()
+    };
+    let [vehicle, flight] = Fleet::columns().map(|column| named(column.name()));
+    let (None, Some(run), Some(vehicle), Some(flight)) =
+        (named("model"), named(Column::RUN), vehicle, flight)
+    else {
+        return Ok(());
+    };
+    let names = [run, vehicle, flight];
+    // Flights that are no numbers are those of another program.
+    let each = |look: &mut dyn FnMut([u64; 3])| {
+        let read = table.scan_beside(&[], &names, |columns| {
+            let [runs, vehicles, flights] = columns else { return };
+            for ((run, vehicle), flight) in runs.iter().zip(vehicles).zip(flights) {
+                let whole = |x: &Option<f64>| x.and_then(Column::run_named);
+                if let (Some(run), Some(vehicle), Some(flight)) =
+                    (whole(run), whole(vehicle), whole(flight))
+                {
+                    look([run, vehicle, flight]);
+                }
+            }
+        });
+        read.is_ok()
+    };
+    let (mut seen, mut repeated) = (Spans::default(), false);
+    if !each(&mut |[run, ..]| repeated |= seen.add(run, 0).is_err()) || !repeated {
+        return Ok(());
+    }
+    // A run may stand for another vehicle again: that takes memory, and is rare.
+    let (mut flights, mut twice) = (BTreeSet::new(), None);
+    each(&mut |flight| {
+        if !flights.insert(flight) && twice.is_none() {
+            twice = Some(flight);
+        }
+    });
+    match twice {
+        None => Ok(()),
+        Some([run, vehicle, flight]) => Err(table.refused(&format!(
+            "two rows are of the run {run}, vehicle {vehicle}, flight {flight}: a run counts once. Take away the copy, or, if these are runs of \
+             different models, judge each model in a file of its own"
+        ))),
     }
 }
 
@@ -251,6 +301,32 @@ mod tests {
                 seen.add(of_none);
                 prop_assert_eq!(seen.each(), None);
             }
+        }
+    }
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(128))]
+
+        /// Rows without a model, of a fleet or of anything else: the table is refused if one flight stands twice, and only then for that.
+        #[test]
+        fn no_flight_counts_twice(
+            rows in prop::collection::vec((0..4_u8, 0..3_u8, 0..2_u8), 1..6),
+            is_fleet in any::<bool>(),
+            names in prop::sample::select(vec![["run", "vehicle", "flight"], ["Run", "VEHICLE", " flight"]]),
+            has_model in any::<bool>(),
+        ) {
+            let rows: Vec<(u8, u8, u8)> = rows
+                .into_iter()
+                .map(|(run, vehicle, flight)| (if is_fleet { 2 * vehicle + flight } else { run }, vehicle, flight))
+                .collect();
+            let (head, cell) = if has_model { (",model", ",a") } else { ("", "") };
+            let [run, vehicle, flight] = names;
+            let mut csv = format!("x,{run},{vehicle},{flight}{head}\n");
+            rows.iter().for_each(|(run, vehicle, flight)| csv += &format!("1,{run},{vehicle},{flight}{cell}\n"));
+            let table = ForeignTable::read_csv("it.csv".as_ref(), csv.as_bytes()).unwrap();
+            let distinct: BTreeSet<_> = rows.iter().collect();
+            let is_refused = Fleet::first_flights(table).is_err_and(|error| error.to_string().contains("a run counts once"));
+            // Of a model and a run, judging tells.
+            prop_assert_eq!(is_refused, distinct.len() < rows.len() && !has_model, "{}", csv);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::{fs::File, io::Read, path::Path, sync::Arc};
 
-use super::{Columns, ForeignError, places, status};
+use super::{Columns, ForeignError, places, reason::no_reason, status};
 use crate::{
     csv_lines::{CsvLines, is_error},
     failure::{Failure, OK},
@@ -111,6 +111,12 @@ pub(super) fn scan_csv(
         last = Some((line, reader.position().byte()));
         let taken = read.and_then(|_| {
             let ended = status.is_none_or(|place| row.get(place) == Some(OK));
+            if let Some(place) = status.filter(|_| !ended)
+                && let Some(problem) = no_reason(row.get(place))
+            {
+                let problem = format!("line {line}, column {:?}: {problem}", there[place]);
+                return Err(ForeignError::new(path, problem));
+            }
             for (column, (place, numbers)) in places.iter().zip(&mut some).enumerate() {
                 let cell = row.get(*place).unwrap_or_default();
                 let number = number(cell).ok_or_else(|| {

@@ -10,7 +10,7 @@ use parquet::{
 };
 use std::{collections::HashMap, fs::File, path::Path};
 
-use super::{Columns, ForeignError, places, status};
+use super::{Columns, ForeignError, StatusOf, places, reason::no_reason, status};
 use crate::{
     failure::{Failure, OK},
     runs_error::said,
@@ -37,7 +37,7 @@ pub(super) fn unread(path: &Path, error: &ParquetError) -> ForeignError {
 pub(super) fn scan_parquet(
     path: &Path,
     (measured, written): (&[String], &[String]),
-    is_run_table: bool,
+    known: StatusOf,
     look: &mut impl FnMut(&Columns),
 ) -> Result<(), ForeignError> {
     let failed = |error: ParquetError| unread(path, &error);
@@ -80,7 +80,7 @@ pub(super) fn scan_parquet(
         }
     }
     let status = status(&there);
-    if status.is_some() != is_run_table {
+    if status.is_some() != known.is_there {
         let problem = "some files of the folder have the columns model, run and status, and some have not: judge the run tables of studies \
                        apart from other tables";
         return Err(ForeignError::new(path, problem));
@@ -94,6 +94,7 @@ pub(super) fn scan_parquet(
             return Err(wrong(place, &problem));
         }
     }
+    let mut first = 0;
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(failed)?;
         let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
@@ -116,12 +117,19 @@ pub(super) fn scan_parquet(
                 text.as_ref().is_some_and(|text| text.data() == OK.as_bytes())
             };
             let texts = read(texts, rows).map_err(failed)?;
-            for (row, _) in texts.iter().enumerate().filter(|(_, text)| !is_ok(text)) {
+            for (row, text) in texts.iter().enumerate().filter(|(_, text)| !is_ok(text)) {
+                let text = text.as_ref().map(|text| String::from_utf8_lossy(text.data()));
+                let problem = if known.of_study { None } else { no_reason(text.as_deref()) };
+                if let Some(problem) = problem {
+                    let of_row = format!("of row {}, from 0, is {problem}", first + row);
+                    return Err(wrong(place, &of_row));
+                }
                 let numbers = numbers[..measured.len()].iter_mut().map(|numbers| &mut numbers[row]);
                 numbers.for_each(|number| *number = number.filter(|x| Failure::has_number(*x)));
             }
         }
         look(&numbers);
+        first += rows;
     }
     Ok(())
 }

@@ -3,7 +3,13 @@
 use gyradius_campaign::threads;
 use gyradius_study::{FailedRuns, Fleet, ForeignTable, Judgement, Looks, Requirement, Verdict};
 use serde_json::json;
-use std::{error::Error, fmt::Write, io, path::Path, process::ExitCode};
+use std::{
+    error::Error,
+    fmt::Write,
+    io,
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
 
 use crate::program::{
     STANDARD_INPUT,
@@ -13,6 +19,9 @@ use crate::program::{
 
 /// What the program returns if a requirement is not met, or not decided.
 const NOT_MET: u8 = 1;
+
+/// Files that are not judged and are named at most.
+const TOLD: usize = 10;
 
 /// Runs the verb.
 pub(crate) fn verdict(arguments: &VerdictArgs) -> Result<ExitCode, Box<dyn Error>> {
@@ -31,7 +40,9 @@ pub(crate) fn verdict(arguments: &VerdictArgs) -> Result<ExitCode, Box<dyn Error
         arguments.require.iter().map(|r| r.clone().with_failed_runs(failed)).collect();
     let judgements = threads(None)?.install(|| Judgement::of_table(&requirements, &table))?;
     if arguments.json {
-        let judged = json!({ "table": arguments.table, "requirements": judgements });
+        let not_judged: Vec<_> =
+            table.beside().iter().map(|file| file.display().to_string()).collect();
+        let judged = json!({ "table": arguments.table, "not_judged": not_judged, "requirements": judgements });
         print_json(&serde_json::to_string_pretty(&judged)?)?;
     } else {
         print(&text(name, &table, &judgements))?;
@@ -45,6 +56,19 @@ fn text(name: &Path, table: &ForeignTable, judgements: &[Judgement]) -> String {
     let unit = judgements.first().map_or("runs", |judgement| judgement.unit(runs));
     let mut text = format!("{}: {runs} {unit}\n", name.display());
     // Writing to a string does not fail.
+    if let Some((told, more)) = table.beside().split_at_checked(table.beside().len().min(TOLD)) {
+        let name = |file: &PathBuf| file.file_name().unwrap_or_default().display().to_string();
+        let names: Vec<String> = told.iter().map(name).collect();
+        let more =
+            if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
+        if !names.is_empty() {
+            let _ = writeln!(
+                text,
+                "Not judged, though there may be runs in it: {}{more}. Of a folder Parquet files are judged.",
+                names.join(", ")
+            );
+        }
+    }
     if let (Looks::Often, Some(campaign)) = (table.counting().looks(), table.campaign()) {
         let _ = writeln!(
             text,
