@@ -149,6 +149,21 @@ impl<'a> Rows<'a> {
     }
 }
 
+/// What the cells of a line may be that has quotation marks which hold no cells, by each separator: each cell without its marks, and what stands
+/// within them.
+pub(crate) fn without_marks(line: &str) -> impl Iterator<Item = Vec<String>> {
+    SEPARATORS.into_iter().map(|separator| {
+        let each = line.split(separator).flat_map(|cell| {
+            let within = cell.split('"').nth(1).map(str::to_owned);
+            [Some(cell.replace('"', " ")), within].into_iter().flatten()
+        });
+        each.map(|cell| cell.trim().to_owned()).collect()
+    })
+}
+
+/// What may stand between cells.
+const SEPARATORS: [char; 3] = [',', ';', '\t'];
+
 /// Most lines above a header, titles and the like, that are looked through for it.
 const TITLES: usize = 100;
 
@@ -175,7 +190,7 @@ pub(crate) fn is_comment(line: &str) -> bool {
 /// Whether a line that begins with # is a row: the heading of a column of numbers, `#,name,mass`, or a number or a name
 /// with one, `#2,…` or `#2 thruster,…`.
 fn is_numbered(line: &str) -> bool {
-    let is_separator = |c: char| [',', ';', '\t'].contains(&c);
+    let is_separator = |c: char| SEPARATORS.contains(&c);
     let Some((first, rest)) = line[1..].split_once(is_separator) else { return false };
     let digits = first.len() - first.trim_start_matches(|c: char| c.is_ascii_digit()).len();
     first.is_empty() && rest.starts_with(char::is_alphabetic)
@@ -194,5 +209,5 @@ fn separator(header: &str, row: &str) -> char {
         let agrees = there > 0 && there == count(row, *separator);
         (agrees, there, *separator == ',')
     };
-    [',', ';', '\t'].into_iter().max_by_key(rank).unwrap_or(',')
+    SEPARATORS.into_iter().max_by_key(rank).unwrap_or(',')
 }

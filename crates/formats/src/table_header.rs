@@ -7,7 +7,7 @@ use crate::{
     heading_sign::without_sign,
     parts::heading::is_spread,
     product_heading::is_unread_product,
-    rows::{Field, Rows, headers},
+    rows::{Field, Rows, headers, without_marks},
     spread,
     ten_heading::TenHeading,
     text::Text,
@@ -133,6 +133,12 @@ fn headings(text: &Text, row: &[Field]) -> Vec<Option<(usize, Result<Unit, BadUn
     row.iter().map(|field| heading(field.of(text.as_str()))).collect()
 }
 
+/// Whether cells name the three moments, whatever follows the names.
+fn has_moments(cells: &[String]) -> bool {
+    let found: Vec<usize> = cells.iter().filter_map(|cell| Some(heading(cell)?.0)).collect();
+    (0..3).all(|column| found.contains(&column))
+}
+
 /// Reads a row as a header, with the units in the row below it if that holds any: nothing if it has not
 /// the columns of the three moments.
 fn header(text: &Text, row: &[Field], below: Option<&[Field]>) -> Result<Option<Header>, Refusal> {
@@ -249,8 +255,14 @@ fn header_at<'t>(
     line: &str,
 ) -> Result<Option<(Header, Rows<'t>)>, Refusal> {
     let mut rows = Rows::at(text.as_str(), at, line);
-    // In a title, a quotation mark is no more than that.
-    let Ok(row) = rows.row() else { return Ok(None) };
+    let row = match rows.row() {
+        Ok(row) => row,
+        Err(error) if without_marks(line).any(|cells| has_moments(&cells)) => {
+            return Err(error.of(text));
+        }
+        // In a title, a quotation mark is no more than that.
+        Err(_) => return Ok(None),
+    };
     let mut below = rows.clone();
     let next = below.next().and_then(Result::ok);
     let header = header(text, &row, next.as_deref())?;

@@ -78,6 +78,42 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// A header whose marks hold no cells was a title, and the rows below it were dropped where another header follows.
+    #[test]
+    fn a_header_is_no_title(
+        separator in select(vec![",", ";", "\t"]),
+        at in 0..8_usize,
+        behind in select(vec![" kg", "kg", " (1)", " x", ""]),
+        is_open in any::<bool>(),
+        titles in 0..3_usize,
+        again in any::<bool>(),
+    ) {
+        let head = "name,mass,cx,cy,cz,ixx,iyy,izz".replace(',', separator);
+        let rest = ",1,0,0,0,1,1,1".replace(',', separator);
+        let mut cells: Vec<String> = head.split(separator).map(str::to_owned).collect();
+        let is_broken = is_open || !behind.is_empty();
+        let (close, behind) = if is_open { ("", "") } else { ("\"", behind) };
+        cells[at] = format!("\"{}{close}{behind}", cells[at]);
+        let mut text = "The \"List\" of parts\n".repeat(titles);
+        text += &format!("{}\na{rest}\n", cells.join(separator));
+        if again {
+            text += &format!("{head}\nb{rest}\n");
+        }
+        for (place, refusal) in ["line ", "t.csv:"].into_iter().zip(refusals(&text)) {
+            let said = refusal.unwrap_or_default();
+            if is_broken {
+                let mark = if is_open { "a quotation mark is not closed" } else { BEHIND };
+                prop_assert!(said.starts_with(&format!("{place}{}: malformed: {mark}", titles + 1)), "{said} of {text}");
+            } else {
+                prop_assert!(again || said.is_empty(), "{said} of {text}");
+            }
+        }
+    }
+}
+
 /// The table of edges and an estimate are read by the same rules.
 #[test]
 fn edges_and_estimates_drop_nothing() {

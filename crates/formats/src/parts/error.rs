@@ -123,13 +123,13 @@ fn because(what: Unread) -> &'static str {
         }
         Unread::Turn => {
             "angles are not read, for their order is not known: a part that is turned must have the quaternion of its attitude in \
-             attitude_x, attitude_y, attitude_z and attitude_w; the column must be empty or 0"
+             attitude_x, attitude_y, attitude_z and attitude_w; the column must be empty, 0 or none"
         }
         Unread::Unit => {
             "units are those of a column, and must stand in its heading or in a row below the header"
         }
         Unread::Growth => {
-            "no growth allowance is added: the mass and the inertia must have it in them; the column must be empty or 0"
+            "no growth allowance is added: the mass and the inertia must have it in them; the column must be empty, 0 or none"
         }
     }
 }

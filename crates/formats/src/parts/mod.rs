@@ -17,7 +17,7 @@ use crate::{
     body::shortened,
     error::Refusal,
     products_comment::stated_products,
-    rows::{Field, Rows, headers},
+    rows::{Field, Rows, headers, without_marks},
     text::Text,
     units::{Unit, squeezed},
 };
@@ -304,18 +304,25 @@ impl Edges {
 /// Where no line names parts and masses, the first one is the header.
 fn header(text: &Text) -> Result<Option<(usize, Vec<String>, Rows<'_>)>, PartsError> {
     let cells = |row: &[Field]| row.iter().map(|field| cell(text, field)).collect::<Vec<_>>();
+    let is_header = |cells: &[String]| {
+        let columns: Vec<Heading> = cells.iter().map(|cell| Heading::of(cell)).collect();
+        let has = |is: fn(&Heading) -> bool| columns.iter().any(is);
+        has(|heading| *heading == Heading::Column(Column::Name))
+            && has(|heading| matches!(heading, Heading::Column(Column::Value(0, _))))
+    };
     let at = |(at, line): (usize, &str)| {
         let mut rows = Rows::at(text.as_str(), at, line);
-        // In a title, a quotation mark is no more than that.
-        let first = rows.row().ok()?;
-        let columns: Vec<Heading> = cells(&first).iter().map(|cell| Heading::of(cell)).collect();
-        let has = |is: fn(&Heading) -> bool| columns.iter().any(is);
-        let is_header = has(|heading| *heading == Heading::Column(Column::Name))
-            && has(|heading| matches!(heading, Heading::Column(Column::Value(0, _))));
-        is_header.then_some((first, rows))
+        match rows.row() {
+            Ok(first) => is_header(&cells(&first)).then_some(Ok((first, rows))),
+            Err(error) if without_marks(line).any(|cells| is_header(&cells)) => {
+                Some(Err(error.of(text)))
+            }
+            // In a title, a quotation mark is no more than that.
+            Err(_) => None,
+        }
     };
     let (first, mut rows) = match headers(text.as_str(), false).find_map(at) {
-        Some(found) => found,
+        Some(found) => found?,
         None => {
             let mut rows = Rows::new(text.as_str());
             let Some(first) = next(text, &mut rows)? else { return Ok(None) };

@@ -104,7 +104,11 @@ fn columns_that_would_change_a_row_are_refused() {
         ("rpy", "0 0 0", "0 1.57 0", "angles are not read"),
         ("growth", "0 %", "1.1", "no growth allowance"),
         ("MGA %", "0", "15%", "no growth allowance"),
-        ("mass margin [%]", "AIAA", "10", "no growth allowance"),
+        ("mass margin [%]", "-", "10", "no growth allowance"),
+        // The allowance of a standard.
+        ("mass margin [%]", "none", "AIAA", "no growth allowance"),
+        ("growth", "n/a", "four", "no growth allowance"),
+        ("yaw", "none", "ninety", "angles are not read"),
         ("Total Qty", "One", "3 off", "a row is one part"),
         ("qty", "1x", "four", "a row is one part"),
         ("count", "× 1", "each", "a row is one part"),

@@ -118,6 +118,9 @@ const KINDS: [Words; 4] = [
     ),
 ];
 
+/// Words and marks that say of an angle or an allowance that there is none.
+const NONE: [&str; 9] = ["-", "--", "–", "—", "none", "nil", "zero", "n/a", "identity"];
+
 impl Unread {
     /// What a heading holds of this kind.
     pub(super) fn of(heading: &str) -> Option<Self> {
@@ -132,20 +135,19 @@ impl Unread {
 
     /// Whether a cell says nothing that would change the row.
     pub(super) fn is_neutral(self, cell: &str) -> bool {
-        let has_digit = cell.contains(|c: char| c.is_ascii_digit());
+        let is_none = NONE.iter().any(|word| cell.eq_ignore_ascii_case(word));
         let of = |word: &str| word.trim_end_matches(['%', '°']).trim().parse::<f64>().ok();
         match self {
-            // Any other word may be a number: `four`, `pair`, `½`.
+            // Any other word may be a number, here and below: `four`, `pair`, `½`, `ninety`.
             Self::Count => {
                 cell.eq_ignore_ascii_case("one")
                     || of(cell.trim_matches(['x', 'X', '×', ' '])) == Some(1.0)
             }
             Self::Turn => {
                 let words = cell.split([' ', ',', ';', '[', ']', '(', ')']);
-                !has_digit
-                    || words.filter(|word| !word.is_empty()).all(|word| of(word) == Some(0.0))
+                is_none || words.filter(|word| !word.is_empty()).all(|word| of(word) == Some(0.0))
             }
-            Self::Growth => !has_digit || of(cell) == Some(0.0),
+            Self::Growth => is_none || of(cell) == Some(0.0),
             Self::Unit => {
                 let plain = cell.to_lowercase();
                 let known = ["kg", "m", "kgm2", "kg·m²", "si", "ea", "each", "pc", "pcs"];
@@ -202,5 +204,23 @@ mod tests {
         ] {
             assert_eq!(Unread::of(heading), None, "{heading}");
         }
+    }
+    /// Words that may be numbers were none in columns of angles and of growth.
+    #[test]
+    fn no_word_that_may_be_a_number_is_neutral() {
+        for what in [Unread::Count, Unread::Turn, Unread::Growth] {
+            for word in
+                ["four", "ninety", "half", "½", "IV", "pair", "up", "?", "yes", "15%", "90", "1e-3"]
+            {
+                assert!(!what.is_neutral(word), "{what:?} {word}");
+            }
+        }
+        for what in [Unread::Turn, Unread::Growth] {
+            for word in ["0", "0.0", "-0", "0 %", "0°", "-", "none", "N/A", "Zero"] {
+                let is_of_other = what == Unread::Turn && word == "0 %";
+                assert!(is_of_other || what.is_neutral(word), "{what:?} {word}");
+            }
+        }
+        assert!(Unread::Turn.is_neutral("[0, 0, 0]") && !Unread::Turn.is_neutral("[0, ninety, 0]"));
     }
 }
