@@ -5,6 +5,7 @@ mod of_folder;
 mod of_parquet;
 mod reason;
 mod twice;
+mod written;
 
 use std::{
     fs::{self, File},

@@ -251,3 +251,47 @@ fn outputs_that_cannot_be_written_are_named() {
         assert!(message.contains("error: standard output: "), "{message}");
     }
 }
+
+/// What of a folder is not read is named: keys of bodies, compressed files, tables beside those that are judged.
+#[test]
+fn what_is_not_read_is_named_in_text_and_in_json() {
+    let shell = Scratch::new();
+    fs::create_dir(shell.path("f")).unwrap();
+    let inertia = "[[1, 0, 0], [0, 1, 0], [0, 0, 1]]";
+    let body = format!("{{\"inertia_kg_m2\": {inertia}, \"colour\": 1, \"material\": \"steel\"}}");
+    let bodies = format!("{{\"bodies\": {{\n\"a\": {body},\n\"b\": {body}}}}}");
+    fs::write(shell.path("f/a.json"), bodies).unwrap();
+    for name in ["f/b.urdf.gz", "f/c.zip"] {
+        fs::write(shell.path(name), "").unwrap();
+    }
+    let told = shell.done(&["check", "f"], 0);
+    let note = "note: f/a.json:2: 2 keys of bodies are not read: colour, material";
+    assert!(told.lines().any(|line| line == note), "{told}");
+    assert!(told.contains("f/b.urdf.gz: it is compressed") && told.contains("f/c.zip"), "{told}");
+    assert!(told.contains("2 files passed over"), "{told}");
+    let found: Value =
+        serde_json::from_str(&shell.done(&["check", "f", "--format", "json"], 0)).unwrap();
+    let keys =
+        serde_json::json!([{ "file": "f/a.json", "line": 2, "keys": ["colour", "material"] }]);
+    assert_eq!(found["unread_keys"], keys, "{found}");
+    assert_eq!(found["summary"]["passed_over"], 2, "{found}");
+
+    shell.done(&["study", "--runs", "40", "--out", "s"], 0);
+    fs::create_dir(shell.path("runs")).unwrap();
+    let block = "000000000-000000039.parquet";
+    fs::copy(shell.path(&format!("s/runs/proposed/{block}")), shell.path("runs/a.parquet"))
+        .unwrap();
+    let judge = ["verdict", "runs", "--require", "nutation_deg <= 90 in 50 % at 90 %"];
+    assert!(!shell.done(&judge, 0).contains("Not judged"));
+    fs::write(shell.path("runs/b.csv.gz"), "").unwrap();
+    let told = shell.done(&judge, 0);
+    assert!(told.contains("Not judged, though there may be runs in it: b.csv.gz."), "{told}");
+    let found: Value =
+        serde_json::from_str(&shell.done(&[&judge[..], &["--json"]].concat(), 0)).unwrap();
+    assert_eq!(found["not_judged"], serde_json::json!(["runs/b.csv.gz"]), "{found}");
+    fs::rename(shell.path("runs/b.csv.gz"), shell.path("runs/b.parquet.gz")).unwrap();
+    let refused = shell.run(&judge);
+    assert_eq!(refused.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(said.contains("runs/b.parquet.gz: it is a compressed Parquet file"), "{said}");
+}

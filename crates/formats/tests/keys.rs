@@ -16,6 +16,9 @@ enum Fate {
 
 use Fate::{Read, Slip, Unread};
 
+/// Whether a body has an inertia, and what else stands in its table.
+type Made = (bool, Vec<(&'static str, &'static str, Fate)>);
+
 const KEYS: [(&str, &str, Fate); 20] = [
     ("mass_kg", "2", Read),
     ("products", "\"integrals\"", Read),
@@ -81,7 +84,7 @@ proptest! {
         ),
         container in select(&[Container::Bodies, Container::ListOfBodies, Container::List, Container::Top][..]),
     ) {
-        let mut bodies: Vec<(bool, Vec<(&str, &str, Fate)>)> = bodies;
+        let mut bodies: Vec<Made> = bodies;
         for (_, keys) in &mut bodies {
             keys.dedup_by_key(|(key, ..)| *key);
         }
@@ -100,7 +103,7 @@ proptest! {
             return Ok(());
         }
         let file = read.unwrap();
-        let is_slip = |(has_inertia, keys): &(bool, Vec<(&str, &str, Fate)>), key: &str, fate| {
+        let is_slip = |(has_inertia, keys): &Made, key: &str, fate| {
             let known = meant(key);
             let is_there = if known == "inertia_kg_m2" { *has_inertia } else {
                 keys.iter().any(|(key, ..)| *key == known)
@@ -108,7 +111,7 @@ proptest! {
             fate == Slip && !is_there
         };
         // At the top level a table may be anything.
-        let is_body = |body: &&(bool, Vec<(&str, &str, Fate)>)| {
+        let is_body = |body: &&Made| {
             !matches!(container, Container::Top)
                 || body.0
                 || body.1.iter().any(|(key, _, fate)| *fate == Slip && meant(key) == "inertia_kg_m2")

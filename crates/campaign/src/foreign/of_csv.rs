@@ -2,9 +2,9 @@
 
 use std::{fs::File, io::Read, path::Path, sync::Arc};
 
-use super::{Columns, ForeignError, places, reason::no_reason, status};
+use super::{Columns, ForeignError, places, reason::no_reason, status, written::number};
 use crate::{
-    csv_lines::{CsvLines, is_error},
+    csv_lines::CsvLines,
     failure::{Failure, OK},
 };
 
@@ -13,9 +13,6 @@ const TOGETHER: usize = 1 << 14;
 /// What is read behind a table: a line end, for a comment that nothing ends would be a row, and a comment, which is a part of a row only if
 /// a quotation mark is open.
 const BEHIND: &[u8] = b"\n#\n";
-/// What stands in a cell that has no number, in small letters.
-const MISSING: [&str; 7] = ["", "nan", "na", "n/a", "null", "none", "-"];
-
 /// Where the text of a CSV table is.
 #[derive(Clone, Debug)]
 pub(super) enum CsvText {
@@ -160,17 +157,4 @@ fn open_quotation(
     let problem = || format!("line {line}: a quotation mark opens a cell, and none closes it");
     let is_open = reader.position().byte() == end;
     is_open.then(|| ForeignError::new(path, problem()))
-}
-
-/// What stands in a cell: a number, or nothing; none if it is something else.
-pub(super) fn number(cell: &str) -> Option<Option<f64>> {
-    if let Ok(number) = cell.parse::<f64>() {
-        return Some(Some(number).filter(|x| !x.is_nan()));
-    }
-    let small = cell.to_ascii_lowercase();
-    match small.as_str() {
-        "true" => Some(Some(1.0)),
-        "false" => Some(Some(0.0)),
-        other => (MISSING.contains(&other) || is_error(other.as_bytes())).then_some(None),
-    }
 }

@@ -1,6 +1,6 @@
 //! Words in the column `status` of a run table that say nothing of why a run failed.
 
-use super::of_csv::number;
+use super::written::number;
 use crate::failure::OK;
 
 /// Words by which other programs say that a run ended well.

@@ -8,9 +8,10 @@ use std::{
 
 use super::{
     ForeignError, ForeignTable, Form,
-    of_csv::{CsvText, broken, number, reader},
+    of_csv::{CsvText, broken, reader},
     of_parquet::{Whole, names, numbers, open, texts, unread, unread_codec},
     place_of,
+    written::number,
 };
 use crate::{column::Column, spans::Spans};
 
