@@ -116,14 +116,20 @@ impl EstimatedBody {
             let start = unitless.form().body(target.mean()).unwrap_or(start);
             joint::matched(&target, &start, &start)
         });
-        let narrow = (off > POOR).then(|| joint::narrow(&unitless, &body)).flatten();
-        let mut own: Vec<Joint> = [own, other, narrow].into_iter().flatten().collect();
+        let mut own: Vec<Joint> = [own, other].into_iter().flatten().collect();
         let apart = if off > ROUGH { apart(&at, &start) } else { None };
         own.extend(apart.and_then(|apart| joint::matched(&at, &start, &apart)));
-        let by_off = own.into_iter().filter_map(|joint| Some((joint.off(&unitless)?, joint)));
-        let nearest = by_off.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, joint)| joint);
-        let own =
-            if off > POOR { nearest.and_then(|joint| joint.refined(&unitless)) } else { nearest };
+        let nearest = |laws: Vec<Joint>| {
+            let by_off = laws.into_iter().filter_map(|law| Some((law.off(&unitless)?, law)));
+            by_off.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, law)| law)
+        };
+        let mut own = nearest(own);
+        if off > POOR {
+            // The nearest of all may have no spread, and then no step leads from it.
+            let narrow = starts.iter().filter_map(|start| joint::narrow(&unitless, start));
+            let both = [own, nearest(narrow.collect())].into_iter().flatten();
+            own = nearest(both.filter_map(|law| law.refined(&unitless)).collect());
+        }
         let own = own.and_then(|joint| {
             let distance = distance_of(&unitless, &joint.law([1.0, 1.0])?)?;
             Some((joint.law(units)?, distance))
