@@ -162,3 +162,30 @@ fn what_is_not_drawn_and_what_is_twice_is_told() {
     let message = refused(&shell, &stated[1..]);
     assert!(message.contains("line 3: 1 inertia stands where this format has none"), "{message}");
 }
+
+/// The deviations that are told are those of two thousand draws at most, and it is said where there are more.
+#[test]
+fn deviations_of_the_first_draws_are_told_to_be_theirs() {
+    let shell = Scratch::new();
+    let text = "<robot name='m'><link name='a'><inertial><mass value='2'/><inertia ixx='2' iyy='2' izz='2' ixy='0' ixz='0' iyz='0'/>\
+                </inertial></link></robot>";
+    fs::write(shell.path("a.urdf"), text).unwrap();
+    let told = ["2000", "2001", "5000"].map(|draws| {
+        let output = shell.run(&[
+            "draw",
+            "a.urdf",
+            "-n",
+            draws,
+            "--mass",
+            "10%",
+            "-o",
+            "a.parquet",
+            "--force",
+        ]);
+        let told = String::from_utf8_lossy(&output.stdout).into_owned();
+        told.split_once("standard deviations of ").unwrap().1.to_owned()
+    });
+    assert!(told[0].starts_with("the draws\n"), "{}", told[0]);
+    assert!(told[1].starts_with("the first 2000 draws\n"), "{}", told[1]);
+    assert_eq!(told[1], told[2]);
+}

@@ -19,6 +19,7 @@ use crate::{
     error::{refused, refused_row},
     json,
     rows::{attitude, matrix, rows},
+    tensors::{SKEW, nearly_symmetric},
 };
 
 /// What was fitted: the law, what was found, whether nothing speaks against the law, how likely that is, and notes.
@@ -37,7 +38,10 @@ fn samples_of<const N: usize, T, E: Display>(
 /// Fits a law of inertias.
 #[pyfunction]
 pub(crate) fn fit_inertias(py: Python<'_>, samples: PyReadonlyArray2<'_, f64>) -> PyResult<Fitted> {
-    let samples = samples_of(&samples, |row| Inertia::new(matrix(row)))?;
+    let samples = samples_of(&samples, |row| {
+        let matrix = nearly_symmetric(&matrix(row), SKEW).map_err(|error| error.to_string())?;
+        Inertia::try_from(matrix).map_err(|error| error.to_string())
+    })?;
     py.detach(|| {
         let fit = PrincipalFit::new(&samples).map_err(refused)?;
         let assessment = fit.assess(&mut verdict());

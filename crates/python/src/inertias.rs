@@ -19,6 +19,7 @@ use crate::{
     json,
     rows::{densities, density_of_nothing, drawn, matrix, row_of, rows},
     stream::Draws,
+    tensors::{SKEW, nearly_symmetric},
 };
 
 /// A law of inertias about the mass centre.
@@ -66,7 +67,8 @@ impl InertiaCore {
     fn about(kind: &str, nominal: [f64; 9], parameters: &str) -> PyResult<Self> {
         let kind: ModelKind = kind.parse().map_err(refused)?;
         let Parameters(given) = json::read(parameters)?;
-        let nominal = Inertia::new(matrix(&nominal)).map_err(refused)?;
+        let nominal = nearly_symmetric(&matrix(&nominal), SKEW).map_err(refused)?;
+        let nominal = Inertia::try_from(nominal).map_err(refused)?;
         DispersionModel::about(kind, &nominal, &given.or(&kind.defaults()))
             .map(Self)
             .map_err(refused)
@@ -128,7 +130,7 @@ impl InertiaCore {
         let all = rows::<9>(&matrices)?;
         let unit = InertiaMatrix::from_entries([1.0; 3], [0.0; 3]).map_err(refused)?;
         densities(py, all.len(), self.0.ln_density(&unit), |i| {
-            match InertiaMatrix::new(matrix(&all[i])) {
+            match nearly_symmetric(&matrix(&all[i]), SKEW) {
                 Ok(inertia) => self.0.ln_density(&inertia),
                 Err(_) => density_of_nothing(&all[i]),
             }

@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// How far from symmetric a matrix may be beside its largest entry, as those in 32 bits and in files are.
-const SKEW: f64 = 1e-6;
+pub(crate) const SKEW: f64 = 1e-6;
 
 /// The means of what stands across the diagonal; none if that differs by more than so much of the largest entry. What is not finite
 /// differs from nothing.
@@ -25,7 +25,10 @@ fn symmetric(matrix: &Matrix3<f64>, skew: f64) -> Option<Matrix3<f64>> {
 }
 
 /// A matrix that is symmetric but for so much of its largest entry.
-fn nearly_symmetric(matrix: &Matrix3<f64>, skew: f64) -> Result<InertiaMatrix, InertiaMatrixError> {
+pub(crate) fn nearly_symmetric(
+    matrix: &Matrix3<f64>,
+    skew: f64,
+) -> Result<InertiaMatrix, InertiaMatrixError> {
     let found = InertiaMatrix::new(*matrix);
     match &found {
         Err(InertiaMatrixError::NotSymmetric { .. }) => {

@@ -353,6 +353,32 @@ def test_units_as_they_are_printed(one: dict[str, Any], other: dict[str, Any]) -
     assert gyradius.law(SOME[0], **one) == gyradius.law(SOME[0], **other)
 
 
+def test_numbers_of_a_body_by_other_names_in_another_order_are_refused() -> None:
+    pandas = pytest.importorskip("pandas")
+    turned = pandas.DataFrame([SOME.array[0]], columns=list(gyradius.COLUMNS))[list(gyradius.COLUMNS)[::-1]]
+    for table in (turned, turned.iloc[0]):
+        with pytest.raises(ValueError, match="in the order of gyradius.COLUMNS"):
+            MassProperties.of(table)
+    assert MassProperties.of(turned[list(gyradius.COLUMNS)].iloc[0]) == SOME[0]
+    assert MassProperties.of(pandas.Series(SOME.array[0])) == SOME[0]
+
+
+def test_tables_of_arrow_are_tables() -> None:
+    arrow = pytest.importorskip("pyarrow")
+    table = arrow.table({name: SOME.array[:, place] for place, name in enumerate(gyradius.COLUMNS)})
+    assert (MassProperties.of(table).array == SOME.array).all()
+    with pytest.raises(ValueError, match="in the order of gyradius.COLUMNS"):
+        MassProperties.of(table.select(list(gyradius.COLUMNS)[::-1]))
+
+
+def test_equal_laws_have_equal_hashes() -> None:
+    matrices = [np.diag([2.0, 3.0, 4.0]) for _ in range(2)]
+    matrices[1][0, 1] = matrices[1][1, 0] = -0.0
+    one, other = (gyradius.InertiaLaw.about("wishart", matrix, delta=0.1) for matrix in matrices)
+    assert one == other and hash(one) == hash(other)
+    assert one != gyradius.InertiaLaw.about("wishart", matrices[0], delta=0.2)
+
+
 @pytest.mark.parametrize("wrong", ["a", None, [1.0, 2.0], np.eye(2), object(), 1j])
 def test_numbers_that_are_none_are_named(wrong: Any) -> None:
     calls: dict[str, Any] = {

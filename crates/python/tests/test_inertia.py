@@ -149,11 +149,46 @@ def test_matrices_in_32_bits() -> None:
         gyradius.nearest([[1.0, 0.1, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
 
 
+def test_matrices_of_narrow_numbers_are_symmetric_for_laws_too() -> None:
+    # As one body draws them, rounded to 32 bits and turned there.
+    law = gyradius.InertiaLaw.about("wishart", np.diag([2.0, 3.0, 4.0]), delta=0.1)
+    wide = law.rvs(300, rng=3)
+    turns = rotations(np.random.default_rng(4), 300).astype(np.float32)
+    narrow = turns @ wide.astype(np.float32) @ np.swapaxes(turns, 1, 2)
+    assert (narrow != np.swapaxes(narrow, 1, 2)).any(axis=(1, 2)).sum() > 100
+    even = (narrow.astype(float) + np.swapaxes(narrow, 1, 2).astype(float)) / 2
+    assert np.isfinite(law.logpdf(narrow)).all()
+    assert np.array_equal(law.logpdf(narrow), law.logpdf(even))
+    for one, same in zip(narrow[:20], even):
+        about = [gyradius.InertiaLaw.about("wishart", matrix, delta=0.1) for matrix in (one, same)]
+        assert about[0].form == about[1].form
+    assert gyradius.InertiaLaw.fit(narrow).law.form == gyradius.InertiaLaw.fit(even).law.form
+    # By more than 32 bits explain, it is no matrix of inertia.
+    even[0, 0, 1] += 1e-3
+    assert law.logpdf(even[0]) == -np.inf
+
+
+def test_reports_on_many_are_those_on_each() -> None:
+    many = np.random.default_rng(5).normal(size=(2 * 8192 + 3, 3, 3))
+    many[::2] = (many[::2] + np.swapaxes(many[::2], 1, 2)) / 2
+    whole = gyradius.report(many)
+    assert np.array_equal(whole.is_realizable, gyradius.is_realizable(many))
+    for place in (0, 8191, 8192, 16384, 16386):
+        one = gyradius.report(many[place])
+        assert whole.faults[place] == one.faults
+        assert np.array_equal(whole.second_moments[place], one.second_moments, equal_nan=True)
+    assert gyradius.report(many[:0]).is_realizable.shape == (0,)
+
+
 def test_masked_entries_are_no_numbers() -> None:
     masked = np.ma.MaskedArray(np.eye(3), mask=np.eye(3, dtype=bool))
     with pytest.raises(ValueError, match="masked"):
         gyradius.margin(masked)
     assert gyradius.is_realizable(np.ma.MaskedArray(np.eye(3)))
+    # Wherever they stand.
+    for hidden in ([masked, masked], [np.eye(3), (masked,)], [[1.0, 0.0, 0.0], [0.0, np.ma.masked, 0.0], [0.0, 0.0, 1.0]]):
+        with pytest.raises(ValueError, match="^inertia: some of its entries are masked"):
+            gyradius.is_realizable(hidden)
     # Of whatever array it is, and by its name.
     places = np.ma.MaskedArray([1, 2], mask=[False, True])
     with pytest.raises(ValueError, match="^index: some of its entries are masked"):

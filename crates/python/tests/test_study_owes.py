@@ -272,6 +272,21 @@ def test_scenarios_are_refused_in_the_words_of_python(keys: dict[str, Any], mess
         gyradius.study(scenario(**keys), double)
 
 
+def test_a_study_stays_where_it_was_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # Also where another one is in the place that its relative path names now.
+    found = []
+    for place, seed in [("a", 1), ("b", 2)]:
+        (tmp_path / place).mkdir()
+        monkeypatch.chdir(tmp_path / place)
+        found.append(gyradius.study(scenario(seed=seed), double, outputs=OUTPUTS, out="study"))
+    read = gyradius.study("study", double, outputs=OUTPUTS)
+    monkeypatch.chdir(tmp_path)
+    first, second, again = (study.to_numpy()["all"]["x"] for study in (*found, read))
+    assert not np.array_equal(first, second) and np.array_equal(second, again)
+    assert found[0].folder == tmp_path / "a" / "study" and found[0].summary["seed"] == 1
+    assert np.array_equal(pickle.loads(pickle.dumps(found[0])).to_numpy()["all"]["x"], first)
+
+
 def test_a_folder_without_a_name_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     with pytest.raises(ValueError, match=r'^out = "": it must be the name of a folder$'):

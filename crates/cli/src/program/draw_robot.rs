@@ -76,8 +76,11 @@ pub(crate) fn draw_robot(arguments: &DrawArgs, path: &Path) -> Result<ExitCode, 
         Ok(None) => {
             let links = draw.summaries();
             // Refused draws make deviations smaller than those that are stated.
-            let told =
-                if arguments.inside.is_some() { table_of(&links) } else { warnings_of(&links) };
+            let told = if arguments.inside.is_some() {
+                table_of(&draw, &links)
+            } else {
+                warnings_of(&links)
+            };
             say((left_as_they_are(&robot, &draw) + &told).trim_end());
             Ok(ExitCode::SUCCESS)
         }
@@ -210,7 +213,7 @@ fn report(arguments: &DrawArgs, robot: &RobotFile, draw: &RobotDraw<'_>, place: 
         if draws == 1 { "" } else { "s" }
     );
     if draws > 1 {
-        out += &table_of(&draw.summaries());
+        out += &table_of(draw, &draw.summaries());
     }
     out + &left_as_they_are(robot, draw)
 }
@@ -255,12 +258,14 @@ fn defaults_of<'a>(
 }
 
 /// Standard deviations that came out, and what is to be said of links.
-fn table_of(links: &[LinkSummary]) -> String {
+fn table_of(draw: &RobotDraw<'_>, links: &[LinkSummary]) -> String {
     let width = links.iter().take(LISTED).map(|link| link.name.chars().count()).max();
     let width = width.unwrap_or(0).max(4);
     let percent = |x: f64| if x.is_finite() { format!("{x:.1} %") } else { "-".to_owned() };
+    let first =
+        if draw.has_more() { format!("first {} ", draw.summarized()) } else { String::new() };
     let mut out = format!(
-        "\nstandard deviations of the draws\n{:width$}  {:>8}  {:>20}  {:>8}  {:>8}  {:>8}\n",
+        "\nstandard deviations of the {first}draws\n{:width$}  {:>8}  {:>20}  {:>8}  {:>8}  {:>8}\n",
         "link", "mass", "mass centre, mm", "I11", "I22", "I33"
     );
     for link in links.iter().take(LISTED) {

@@ -26,7 +26,8 @@ pub struct EstimateDistance {
     #[getset(get_copy = "pub")]
     correlation: f64,
     /// What laws are made to have as small as they can: the root of the sum of the squares of the differences of means in deviations,
-    /// of relative differences of deviations (to first order), and of correlations (of each pair once).
+    /// of half the relative differences of variances, and of covariances over the stated deviations (of each pair once). For small
+    /// differences the last two are the relative differences of deviations and the differences of correlations.
     #[getset(get_copy = "pub")]
     total: f64,
 }

@@ -65,7 +65,12 @@ def frozen(array: A) -> A:
 
 def unmasked(name: str, value: Any) -> None:
     """Refuses arrays of which some entries are masked: NumPy would take what stands behind the mask."""
-    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+    if isinstance(value, (list, tuple)):
+        for one in value:
+            # Most are numbers, and there may be millions of them.
+            if not isinstance(one, (float, int)):
+                unmasked(name, one)
+    elif isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
         raise ValueError(f"{name}: some of its entries are masked")
 
 
@@ -86,15 +91,28 @@ def numbers(name: str, value: ArrayLike) -> NDArray[np.float64]:
 
 def rows(name: str, value: ArrayLike, tail: tuple[int, ...]) -> tuple[NDArray[np.float64], tuple[int, ...]]:
     """An array of shape (..., *tail) as rows, and what the dots stand for."""
-    named = getattr(value, "columns", None)
-    if tail == (10,) and named is not None and set(named) == set(_core.COLUMNS) and list(named) != list(_core.COLUMNS):
-        raise ValueError(f"{name}: its columns must be in the order of gyradius.COLUMNS, as in table[list(gyradius.COLUMNS)]")
+    if tail == (10,):
+        named = names_of(value)
+        if named is not None and set(named) == set(_core.COLUMNS) and named != list(_core.COLUMNS):
+            raise ValueError(
+                f"{name}: its columns must be in the order of gyradius.COLUMNS, as in table[list(gyradius.COLUMNS)]"
+            )
     array = numbers(name, value)
     if array.shape[array.ndim - len(tail) :] != tail or array.ndim < len(tail):
         wanted = ", ".join(["...", *map(str, tail)])
         raise ValueError(f"{name}: its shape is {array.shape}, and it must be ({wanted})")
     lead = array.shape[: array.ndim - len(tail)]
     return np.ascontiguousarray(array).reshape(-1, int(np.prod(tail))), lead
+
+
+def names_of(value: Any) -> list[str] | None:
+    """The names of the columns of a table, of pandas, polars or Arrow, or of the numbers of one of its rows, where they have names."""
+    for names in ("column_names", "columns", "index"):
+        found = getattr(value, names, None)
+        # A list has a method `index`, and the columns of some tables are their values.
+        if found is not None and not callable(found) and all(isinstance(one, str) for one in found):
+            return list(found)
+    return None
 
 
 def together(*arrays: tuple[str, ArrayLike, tuple[int, ...]]) -> tuple[list[NDArray[np.float64]], tuple[int, ...]]:

@@ -34,7 +34,9 @@ class Estimate(NamedTuple):
     * ``"deviations"``: by how many percent the standard deviations are larger; None for what does not vary.
     * ``"mahalanobis"``: of the means, with the covariance of the estimate.
     * ``"correlation"``: the largest difference of a correlation.
-    * ``"total"``: the root of the sum of all squares: of means in deviations, relative deviations, and correlations.
+    * ``"total"``: what the laws are made to have as small as they can: the root of the sum of the squares of the differences of means in
+      deviations, of half the relative differences of variances, and of covariances over the deviations of the estimate (of each pair
+      once).
     * ``"is_exact"``: whether mean and covariance are those of the estimate, but for rounding.
     """
     log_cholesky: MassPropertiesLaw | None

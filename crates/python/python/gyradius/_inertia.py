@@ -74,6 +74,10 @@ def margin(inertia: ArrayLike, *, dtype: DTypeLike | None = None) -> Any:
     return out(_core.inertia_margin(flat), lead, dtype)
 
 
+PIECE = 1 << 13
+"""Matrices that are reported on in one go."""
+
+
 class Report(NamedTuple):
     """What is right and wrong with inertia matrices, of the shape (...) of what was asked."""
 
@@ -114,7 +118,10 @@ def report(inertia: ArrayLike, tolerance: Real | None = None) -> Report:
     not realizable: I33 = 3.3 kg·m² exceeds the sum of the others, 1 + 2 kg·m², by 10.00 %
     """
     flat, lead = rows("inertia", inertia, (3, 3))
-    found = _core.inertia_report(flat, _tolerance(tolerance, inertia))
+    allowed = _tolerance(tolerance, inertia)
+    # In pieces, between which Python sees an interrupt.
+    pieces = (flat[first : first + PIECE] for first in range(0, max(len(flat), 1), PIECE))
+    found = [one for piece in pieces for one in _core.inertia_report(piece, allowed)]
     nothing = [np.nan] * 3
 
     def column(place: int, missing: Any, tail: tuple[int, ...] = ()) -> Any:

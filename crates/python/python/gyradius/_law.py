@@ -50,7 +50,8 @@ class Law:
         return self._made == other._made
 
     def __hash__(self) -> int:
-        return hash((type(self), repr(self._made)))
+        # Zero and minus zero are equal.
+        return hash((type(self), repr(self._made).replace("-0.0", "0.0")))
 
     @property
     def form(self) -> dict[str, Any]:

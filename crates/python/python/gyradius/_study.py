@@ -403,6 +403,8 @@ def study(
     if place is None:
         temporary = tempfile.mkdtemp(prefix="gyradius-")
         place = Path(temporary) / core.name
+    # The study is there when somebody has changed the current folder, such as its own simulation.
+    place = place.absolute()
     try:
         done = core.run(
             simulation=called,

@@ -32,10 +32,22 @@ pub struct LinkSummary {
 }
 
 impl RobotDraw<'_> {
+    /// How many draws the summaries are of: the first ones, where there are more.
+    #[must_use]
+    pub fn summarized(&self) -> u64 {
+        self.options.draws.min(LOOKED_AT)
+    }
+
+    /// Whether there are more.
+    #[must_use]
+    pub fn has_more(&self) -> bool {
+        self.options.draws > LOOKED_AT
+    }
+
     /// What the draws of each link have come to.
     #[must_use]
     pub fn summaries(&self) -> Vec<LinkSummary> {
-        let end = self.options.first + self.options.draws.min(LOOKED_AT);
+        let end = self.options.first + self.summarized();
         self.links.iter().map(|link| self.summary(link, end)).collect()
     }
 
