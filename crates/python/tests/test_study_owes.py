@@ -292,3 +292,24 @@ def test_a_folder_without_a_name_is_refused(tmp_path: Path, monkeypatch: pytest.
     with pytest.raises(ValueError, match=r'^out = "": it must be the name of a folder$'):
         gyradius.study(scenario(), double, outputs=OUTPUTS, out="")
     assert not list(tmp_path.iterdir())
+
+
+def by_place(inputs: dict[str, float], run: int, /) -> tuple[float, float]:
+    return inputs["x"], float(run)
+
+
+def of_nobody(inputs: dict[str, float], colour: str) -> tuple[float, float]:
+    return inputs["x"], 0.0
+
+
+@pytest.mark.parametrize(
+    ("function", "message"),
+    [
+        (by_place, "^simulation: its parameter 'run' is given by its name, and stands before a `/`$"),
+        (of_nobody, "^simulation: nothing is known for its parameter 'colour'; what is known is run, "),
+        (lambda: (0.0, 0.0), "^simulation: it must take the dictionary of the inputs as its first argument$"),
+    ],
+)
+def test_functions_that_cannot_be_called_are_refused(function: Callable[..., Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        gyradius.study(scenario(), function, outputs=OUTPUTS)

@@ -61,6 +61,8 @@ def called_with(simulation: Simulation) -> tuple[Callable[[dict[str, float], dic
             needed.add(other.name)
         various = other.kind in (inspect.Parameter.VAR_KEYWORD, inspect.Parameter.VAR_POSITIONAL)
         if not (named or various) and other.default is inspect.Parameter.empty:
+            if other.name in ABOUT:
+                raise ValueError(f"simulation: its parameter {other.name!r} is given by its name, and stands before a `/`")
             known = ", ".join(ABOUT)
             raise ValueError(f"simulation: nothing is known for its parameter {other.name!r}; what is known is {known}")
     if not wanted:
