@@ -24,7 +24,8 @@ pub(crate) fn bodies(
         return Err(text.malformed(item.1.start, data_keys::error(&item.0)));
     }
     let products = match root.get("products") {
-        None => default,
+        // As a table it says what is known of them: the file is one of statements.
+        None | Some(Item { value: Value::Table(_), .. }) => default,
         Some(item) => products_of(item).map_err(|error| text.malformed(item.start, error))?,
     };
     let found = found(root);

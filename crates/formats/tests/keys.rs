@@ -198,3 +198,20 @@ fn tables_by_name_are_bodies_each_and_letters_of_entries_are_named() {
         ]
     );
 }
+
+/// A file of statements says by a table what is known of the products, and its nominal body is read as any other.
+#[test]
+fn what_is_known_of_products_is_no_sign_of_them() {
+    let text = format!(
+        "[nominal]\nmass_kg = 2\ninertia_kg_m2 = {INERTIA}\n[moments]\npercent = 10\n[products]\nkg_m2 = 0.3\n[mass]\npercent = 5\n"
+    );
+    for default in [Products::TensorEntries, Products::Integrals] {
+        let file =
+            InertiaFile::parse(Path::new("a.toml"), text.clone().into_bytes(), default).unwrap();
+        let [nominal] = file.bodies() else { panic!("{:?}", file.bodies()) };
+        let sign = if default == Products::TensorEntries { 1.0 } else { -1.0 };
+        let matrix = nominal.inertia().unwrap();
+        let products = [(0, 1), (0, 2), (1, 2)].map(|place| matrix[place]);
+        assert_eq!(products, [0.1, 0.2, 0.3].map(|x| sign * x));
+    }
+}
