@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import URDF, bodies, rotations
+from conftest import URDF, bodies, inertias, rotations
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -89,6 +89,34 @@ def test_mujoco_frames(seed: int) -> None:
     assert (made.body_mass == some.mass).all() and (made.body_ipos == some.centre).all()
     assert some.to_mujoco(dtype=np.float32).body_iquat.dtype == np.float32
     assert some[0].to_mujoco().body_iquat.shape == (4,)
+
+
+def test_plates_and_rods_in_32_bits_stay_bodies() -> None:
+    rng = np.random.default_rng(6)
+    wide = inertias(rng, 500).astype(np.float32)
+    # Of a program for graphics cards: plates and rods lie outside of what bodies have by the rounding, in 64 bits.
+    turns = rotations(rng, 500).astype(np.float32)
+    narrow = turns @ wide @ turns.transpose(0, 2, 1)
+    narrow = 0.5 * (narrow + narrow.transpose(0, 2, 1))
+    lost = ~gyradius.is_realizable(narrow.astype(float))
+    assert lost.sum() > 50
+    parts = np.float32(2.0), np.zeros(3, np.float32)
+    made = MassProperties(*parts, narrow)
+    table = np.zeros((500, 10), np.float32)
+    table[:, 0] = 2.0
+    table[:, 4:] = [[one[at] for at in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))] for one in narrow]
+    assert MassProperties.of(table) == made
+    assert MassProperties(*parts, list(narrow)) == made
+    assert made.is_realizable.all() and made.to_mujoco().body_inertia.shape == (500, 3)
+    assert (made.translated([1.0, 2.0, 3.0]) + made).is_realizable.all()
+    assert (made.inertia[~lost] == narrow[~lost]).all()
+    moved = np.abs(made.inertia - narrow).max(axis=(1, 2))
+    assert (moved <= 7.7e-6 * np.trace(narrow, axis1=1, axis2=2)).all() and (moved[lost] > 0).all()
+    # What lies further outside stays what it was said to be, and so does what comes in 64 bits.
+    outside = np.diag([1.0, 1.0, 2.001]).astype(np.float32)
+    made = MassProperties(*parts, outside)
+    assert not made.is_realizable and (made.inertia == outside).all()
+    assert MassProperties(*parts, narrow.astype(float)).is_realizable.tolist() == (~lost).tolist()
 
 
 def test_shapes_and_parts() -> None:

@@ -15,6 +15,7 @@ import numpy as np
 from gyradius import _core
 from gyradius._arrays import attitudes, flag, floating, folder_or_file, frozen, numbers, ordered, out, rows, together
 from gyradius._arrays import form as _form
+from gyradius._inertia import is_narrow, is_realizable, of_rounded
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -26,6 +27,9 @@ CELL = np.dtype((np.void, 80))
 """The ten numbers of a body as one."""
 
 ENTRIES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+
+MATRIX = (4, 7, 8, 7, 5, 9, 8, 9, 6)
+"""Where the nine entries of the inertia stand among the ten numbers."""
 
 
 class MujocoBodies(NamedTuple):
@@ -46,7 +50,9 @@ class MassProperties:
 
     Ten numbers a body, in the last axis of `array`: mass in kg, mass centre in m in the axes of the body, and the
     entries 11, 22, 33, 12, 13, 23 of the inertia about the mass centre in kg·m², products as tensor entries. They need not be
-    those of a body: `is_realizable` says which are, and what computes with bodies refuses the others.
+    those of a body: `is_realizable` says which are, and what computes with bodies refuses the others. Of inertias in 32 bits, whose
+    rounding takes about half of all plates out of what bodies have, those that lie outside by no more than this rounding, 7.6e-6 of the
+    trace, are replaced by the nearest that some body has.
 
     Parameters
     ----------
@@ -76,6 +82,8 @@ class MassProperties:
 
     def __init__(self, mass: ArrayLike, centre: ArrayLike, inertia: ArrayLike) -> None:
         parts, lead = together(("mass", mass, ()), ("centre", centre, (3,)), ("inertia", inertia, (3, 3)))
+        if is_narrow(inertia):
+            parts[2] = of_rounded(parts[2].reshape(-1, 3, 3)).reshape(-1, 9)
         self._set(_core.body_of_parts(*parts).reshape(*lead, 10))
 
     def _set(self, array: NDArray[np.float64]) -> None:
@@ -85,7 +93,11 @@ class MassProperties:
     def of(cls, array: ArrayLike) -> MassProperties:
         """The bodies of an array of shape (..., 10), in the order of `gyradius.COLUMNS`."""
         flat, lead = rows("array", array, (10,))
-        return cls._of(flat.copy().reshape(*lead, 10))
+        bodies = flat.copy()
+        if is_narrow(array):
+            rounded = of_rounded(bodies[:, MATRIX].reshape(-1, 3, 3))
+            bodies[:, 4:] = np.stack([rounded[:, i, j] for i, j in ENTRIES], axis=1)
+        return cls._of(bodies.reshape(*lead, 10))
 
     @classmethod
     def _of(cls, array: NDArray[np.float64]) -> MassProperties:
@@ -147,13 +159,11 @@ class MassProperties:
     def inertia(self) -> NDArray[np.float64]:
         """(..., 3, 3): about the mass centre in kg·m²."""
         # In the order of C, which what takes matrices need not copy.
-        return np.take(self._array, [4, 7, 8, 7, 5, 9, 8, 9, 6], axis=-1).reshape(*self.shape, 3, 3)
+        return np.take(self._array, MATRIX, axis=-1).reshape(*self.shape, 3, 3)
 
     @property
     def is_realizable(self) -> Any:
         """Which of them are bodies: a mass above zero, finite numbers, and an inertia that some body has."""
-        from gyradius._inertia import is_realizable
-
         fine = (self.mass > 0) & np.isfinite(self._array).all(axis=-1)
         found = fine & is_realizable(self.inertia)
         return bool(found) if self.shape == () else found

@@ -185,6 +185,21 @@ def nearest(
     return out(_core.inertia_nearest(flat, text("method", method)), (*lead, 3, 3), dtype)
 
 
+def is_narrow(values: ArrayLike) -> bool:
+    """Whether they come in 32 bits."""
+    return np.asarray(values).dtype == np.float32
+
+
+def of_rounded(inertia: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Inertias that were rounded to 32 bits: the nearest of some body in the place of those that only this rounding took from all bodies."""
+    lost = ~is_realizable(inertia) & is_realizable(inertia, 64.0 * float(np.finfo(np.float32).eps))
+    if not lost.any():
+        return inertia
+    found = inertia.copy()
+    found[lost] = nearest(inertia[lost])
+    return found
+
+
 class PrincipalAxes(NamedTuple):
     """Principal moments and axes of inertia matrices.
 
@@ -253,9 +268,8 @@ def _transposed_rotation(xyzw: NDArray[np.float64]) -> NDArray[np.float64]:
 def _tolerance(tolerance: Real | None, inertia: ArrayLike) -> float | None:
     """What is said; otherwise 64 units in the last place of the numbers, of which the compiled part knows those of 64 bits."""
     if tolerance is None:
-        dtype = getattr(inertia, "dtype", None)
-        narrow = isinstance(dtype, np.dtype) and dtype.kind == "f" and dtype.itemsize < 8
-        return 64.0 * float(np.finfo(dtype).eps) if narrow else None
+        dtype = np.asarray(inertia).dtype
+        return 64.0 * float(np.finfo(dtype).eps) if dtype.kind == "f" and dtype.itemsize < 8 else None
     found = real("tolerance", tolerance)
     if not 0.0 <= found < np.inf:
         raise ValueError(f"tolerance = {tolerance!r}: it must be zero or positive, and finite")
