@@ -1,11 +1,12 @@
 //! Regions about points: the box along the body axes, and the smallest ellipsoid.
 
 use nalgebra::{
-    Isometry3, Matrix3, Matrix4, Rotation3, SymmetricEigen, Translation3, UnitQuaternion, Vector3,
+    Isometry3, Matrix3, Matrix3xX, Matrix4, Rotation3, Translation3, UnitQuaternion, Vector3,
     Vector4,
 };
 
 use super::{Region, RegionError};
+use crate::RELATIVE_TOLERANCE;
 
 /// Steps towards the smallest ellipsoid.
 const STEPS: usize = 2000;
@@ -67,9 +68,50 @@ fn smallest(
     outer: &[Vector3<f64>],
     all: impl Iterator<Item = Vector3<f64>>,
 ) -> Option<Result<Region, RegionError>> {
+    // An affine map takes the smallest ellipsoid of points to that of their images. It is found of images that spread
+    // alike along all axes about the origin, so that neither place nor size nor thickness of the points counts.
     let n = outer.len();
+    if n < 4 {
+        return None;
+    }
+    let middle = outer.iter().fold(Vector3::zeros(), |sum, x| sum + x / n as f64);
+    let size = outer.iter().map(|x| (x - middle).amax()).fold(0.0, f64::max);
+    let away: Vec<Vector3<f64>> = outer.iter().map(|x| (x - middle) / size).collect();
+    let found = Matrix3xX::from_columns(&away).svd(true, false);
+    let axes: Matrix3<f64> = found.u?.fixed_columns::<3>(0).into_owned();
+    let extents: Vector3<f64> = found.singular_values.fixed_rows::<3>(0) / (n as f64).sqrt();
+    // As thick are points of a plane whose coordinates are rounded.
+    if !(extents.min() > RELATIVE_TOLERANCE * (1.0 + middle.amax() / size)) {
+        return None;
+    }
+    let even: Vec<Vector3<f64>> =
+        away.iter().map(|x| axes.tr_mul(x).component_div(&extents)).collect();
+    let weights = weights(&even)?;
+    let centre: Vector3<f64> = even.iter().zip(&weights).map(|(x, w)| x * *w).sum();
+    let about = |x: &Vector3<f64>| (x - centre) * (x - centre).transpose();
+    let spread: Matrix3<f64> = even.iter().zip(&weights).map(|(x, w)| about(x) * *w).sum();
+    let back = axes * Matrix3::from_diagonal(&extents) * size;
+    let centre = middle + back * centre;
+    // Singular values of a root of the spread are as exact in the thin directions of the points as in the others.
+    let found = (back * spread.cholesky()?.l()).svd(true, false);
+    let (semi_axes, mut axes) = (found.singular_values, found.u?);
+    if axes.determinant() < 0.0 {
+        axes.column_mut(0).neg_mut();
+    }
+    let reach = |x: Vector3<f64>| axes.tr_mul(&(x - centre)).component_div(&semi_axes).norm();
+    // With what rounding takes away.
+    let semi_axes = semi_axes * all.map(reach).fold(0.0, f64::max) * (1.0 + 1e-9);
+    let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes));
+    let pose = Isometry3::from_parts(Translation3::from(centre), turn);
+    let region = Region::ellipsoid(Vector3::zeros(), semi_axes);
+    Some(region.and_then(|region| region.transformed(&pose)))
+}
+
+/// The weights of points of whose spread about the weighted middle the smallest ellipsoid has the form.
+fn weights(points: &[Vector3<f64>]) -> Option<Vec<f64>> {
+    let n = points.len();
     // The ellipsoids about the origin in four dimensions cut the space of the points at height 1.
-    let lifted: Vec<Vector4<f64>> = outer.iter().map(|x| x.push(1.0)).collect();
+    let lifted: Vec<Vector4<f64>> = points.iter().map(|x| x.push(1.0)).collect();
     let mut weights = vec![1.0 / n as f64; n];
     for _ in 0..STEPS {
         let spread: Matrix4<f64> =
@@ -85,29 +127,16 @@ fn smallest(
         weights.iter_mut().for_each(|weight| *weight *= 1.0 - step);
         weights[place] += step;
     }
-    let middle: Vector3<f64> = outer.iter().zip(&weights).map(|(x, w)| x * *w).sum();
-    let about = |x: &Vector3<f64>| (x - middle) * (x - middle).transpose();
-    let spread: Matrix3<f64> = outer.iter().zip(&weights).map(|(x, w)| about(x) * *w).sum();
-    let inverse = spread.try_inverse()?;
-    let reach = all.map(|x| (x - middle).dot(&(inverse * (x - middle)))).fold(0.0, f64::max);
-    let eigen = SymmetricEigen::new(spread * reach);
-    let mut axes = eigen.eigenvectors;
-    if axes.determinant() < 0.0 {
-        axes.column_mut(0).neg_mut();
-    }
-    let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes));
-    // What rounding takes away.
-    let semi_axes = eigen.eigenvalues.map(|x| x.max(0.0).sqrt() * (1.0 + 1e-9));
-    let pose = Isometry3::from_parts(Translation3::from(middle), turn);
-    let region = Region::ellipsoid(Vector3::zeros(), semi_axes);
-    Some(region.and_then(|region| region.transformed(&pose)))
+    Some(weights)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::Kind;
     use super::*;
     use crate::{Containment, Shape};
     use proptest::prelude::*;
+    use std::array;
 
     proptest! {
         /// Points all around a known ellipsoid give that, and its box; bodies in it are held, and larger ones are not.
@@ -159,6 +188,76 @@ mod tests {
                     let body = crate::MassProperties::point(1.0, Vector3::from(point)).unwrap();
                     prop_assert_eq!(region.containment(&body), Containment::Possible, "{:?}", point);
                 }
+            }
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+
+        /// The smallest ellipsoid goes with the points, wherever they are moved, however they are stretched, and holds them;
+        /// of points in a plane there is none.
+        #[test]
+        fn an_ellipsoid_goes_with_its_points(
+            off in prop::array::uniform8(prop::array::uniform3(-0.4..0.4_f64)),
+            turn in prop::array::uniform3(-3.0..3.0_f64),
+            thickness in prop_oneof![Just(1.0), (-7.0..0.0_f64).prop_map(|e| 10_f64.powf(e))],
+            exponent in -20..20_i32,
+            far in prop_oneof![Just(0.0), (0.0..4.0_f64).prop_map(|e| 10_f64.powf(e))],
+        ) {
+            let corner = |i: usize, axis: usize| if i >> axis & 1 == 0 { -1.0 } else { 1.0 };
+            let points: [[f64; 3]; 8] =
+                array::from_fn(|i| array::from_fn(|axis| corner(i, axis) + off[i][axis]));
+            let turn = UnitQuaternion::from_scaled_axis(Vector3::from(turn));
+            let size = 10_f64.powi(exponent);
+            let volume = |points: &[[f64; 3]]| {
+                Region::ellipsoid_about(points).map(|region| match &region.0 {
+                    Kind::Ellipsoid { semi_axes, .. } => (region.clone(), semi_axes.product()),
+                    Kind::Box { .. } | Kind::Hull(_) => unreachable!("an ellipsoid"),
+                })
+            };
+            let put = |thickness: f64| {
+                let stretch = Vector3::new(1.0, 1.0, thickness);
+                let place = |p: &[f64; 3]| turn * Vector3::from(*p).component_mul(&stretch) + Vector3::repeat(far);
+                points.iter().map(|p| (place(p) * size).into()).collect::<Vec<[f64; 3]>>()
+            };
+            let (_, plain) = volume(&points).unwrap();
+            let moved = put(thickness);
+            let (region, found) = volume(&moved).unwrap();
+            // The coordinates are rounded, in parts of the thickness.
+            let rounding = 1e-13 * (1.0 + far) / thickness;
+            prop_assert!((found / (plain * thickness * size.powi(3)) - 1.0).abs() < 3e-4 + rounding, "{} {}", found, plain);
+            for point in moved {
+                let body = crate::MassProperties::point(1.0, Vector3::from(point)).unwrap();
+                prop_assert_eq!(region.containment(&body), Containment::Possible, "{:?}", point);
+            }
+            prop_assert_eq!(Region::ellipsoid_about(&put(0.0)), Err(RegionError::Flat));
+        }
+    }
+
+    proptest! {
+        /// Equal masses at the corners of a box, and at the tips of an ellipsoid, are in there, however thin and turned.
+        #[test]
+        fn bodies_on_the_boundary_are_inside(
+            thickness in (-4.0..0.0_f64).prop_map(|e| 10_f64.powf(e)),
+            turn in prop::array::uniform3(-3.0..3.0_f64),
+            middle in prop::array::uniform3(-2.0..2.0_f64),
+            size in (-3.0..3.0_f64).prop_map(|e| 10_f64.powf(e)),
+        ) {
+            let half = Vector3::new(1.0, 0.5, thickness) * size;
+            let turn = UnitQuaternion::from_scaled_axis(Vector3::from(turn));
+            let pose = Isometry3::from_parts(Translation3::from(Vector3::from(middle) * size), turn);
+            let corner = |i: usize| Vector3::from_fn(|axis, _| if i >> axis & 1 == 0 { -half[axis] } else { half[axis] });
+            let tip = |i: usize| Vector3::ith(i / 2, if i % 2 == 0 { -half[i / 2] } else { half[i / 2] });
+            let box_ = Region::solid_box(Vector3::zeros(), half).unwrap();
+            let ellipsoid = Region::ellipsoid(Vector3::zeros(), half).unwrap();
+            for (region, points) in [(box_, (0..8).map(corner).collect()), (ellipsoid, (0..6).map(tip).collect::<Vec<_>>())] {
+                let points = points.into_iter().map(|p| (1.0, (pose * nalgebra::Point3::from(p)).coords));
+                let body = crate::MassProperties::from_points(points).unwrap();
+                let region = region.transformed(&pose).unwrap();
+                prop_assert_ne!(region.containment(&body), Containment::Impossible, "{} {:?}", region.room(&body), region);
+                let beyond = body.translated(turn * Vector3::z() * (2e-3 * half.z)).unwrap();
+                prop_assert_eq!(region.containment(&beyond), Containment::Impossible);
             }
         }
     }

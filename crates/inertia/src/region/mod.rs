@@ -60,6 +60,9 @@ enum Kind {
     Ellipsoid {
         pose: Isometry3<f64>,
         semi_axes: Vector3<f64>,
+        /// From body axes to those of the ellipsoid, in parts of its semi-axes.
+        to_unit: Matrix3<f64>,
+        /// Q⁻¹ = BᵀB, where B is `to_unit`.
         weights: Matrix3<f64>,
     },
     Box {
@@ -98,9 +101,10 @@ impl Region {
 
     fn of_ellipsoid(pose: Isometry3<f64>, semi_axes: Vector3<f64>) -> Self {
         let turn = *pose.rotation.to_rotation_matrix().matrix();
+        let to_unit = Matrix3::from_diagonal(&semi_axes.map(f64::recip)) * turn.transpose();
         let weights =
             turn * Matrix3::from_diagonal(&semi_axes.map(|a| 1.0 / (a * a))) * turn.transpose();
-        Self(Kind::Ellipsoid { pose, semi_axes, weights })
+        Self(Kind::Ellipsoid { pose, semi_axes, to_unit, weights })
     }
 
     /// A box with its edges along the axes of the body, from its middle and half its sides.
@@ -236,11 +240,11 @@ impl Region {
         mass_centre_m: &Vector3<f64>,
         second_moments_kg_m2: &Matrix3<f64>,
     ) -> Option<f64> {
-        let Kind::Ellipsoid { pose, weights, .. } = &self.0 else { return None };
+        let Kind::Ellipsoid { pose, to_unit, weights, .. } = &self.0 else { return None };
         let off = mass_centre_m - pose.translation.vector;
-        // tr(Q⁻¹ Σ_c)/m + (c − e)ᵀ Q⁻¹ (c − e).
+        // tr(Q⁻¹ Σ_c)/m + (c − e)ᵀ Q⁻¹ (c − e), the latter as a sum of squares: Q⁻¹ itself has lost what a thin ellipsoid needs.
         let own = weights.component_mul(second_moments_kg_m2).sum() / mass_kg;
-        Some(1.0 - own - off.dot(&(weights * off)))
+        Some(1.0 - own - (to_unit * off).norm_squared())
     }
 
     /// The least of the conditions that every distribution of matter in the region meets, each relative to what it would
@@ -270,12 +274,14 @@ impl Region {
 }
 
 /// What rounding may change the room of an ellipsoid or a box by: of coordinates far from the origin of the body axes it is
-/// more, in parts of the thickness of the region. A hull takes account of that itself.
+/// more, in parts of the thickness of the region, and so it is of wide bodies. A hull takes account of that itself.
 fn rounding(body: &MassProperties, pose: &Isometry3<f64>, half: &Vector3<f64>) -> f64 {
     let far = body.mass_centre_m().norm() + pose.translation.vector.norm();
     let moved = RELATIVE_TOLERANCE * far / half.min();
+    // Turned into the frame of the region, small second moments have the rounding of the large ones.
+    let turned = 0.5 * body.inertia().as_inertia_matrix().matrix().trace() / body.mass_kg();
     // Of (c + δ)², c being at most one where a room is near zero.
-    RELATIVE_TOLERANCE + moved * (2.0 + moved)
+    RELATIVE_TOLERANCE * (1.0 + turned / half.min() / half.min()) + moved * (2.0 + moved)
 }
 
 /// A body per unit of its mass, in the frame of a region.
