@@ -231,7 +231,11 @@ macro_rules! framed {
                 rule: StoppingRule,
                 look_every: Option<u64>,
             ) -> Result<Self, ScenarioError> {
-                let until = Some($crate::scenario::UntilFile::new(rule, look_every));
+                let new = $crate::scenario::UntilFile::new(rule, look_every);
+                let until = Some(match &self.until {
+                    Some(until) => new.with_most_runs(until.most_runs()),
+                    None => new,
+                });
                 let mut file = $file { until, ..self.file };
                 let until = file.until(self.size)?;
                 Ok(Self { file, until, ..self })

@@ -84,3 +84,35 @@ impl UntilFile {
         Ok(until.with_first_look(self.first_look))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::Scenario;
+
+    /// Another rule, or another number of runs between looks, leaves the greatest number of runs as the scenario has it.
+    #[test]
+    fn the_greatest_number_of_runs_is_that_of_the_scenario() {
+        let peck = Scenario::peck_2003().unwrap().to_toml();
+        let rest: Vec<&str> = peck.lines().filter(|line| !line.starts_with("runs =")).collect();
+        for (own, most) in [("runs = 60", Some(200)), ("", Some(200)), ("runs = 60", None)] {
+            let most_runs = most.map_or(String::new(), |most| format!("most_runs = {most}\n"));
+            let until = format!("[until]\nrule = \"mean(nutation_deg) within 1\"\n{most_runs}");
+            let text = format!("{own}\n{}\n{until}", rest.join("\n"));
+            for look_every in [None, Some(40)] {
+                for rule in ["mean(nutation_deg) within 1", "mean(cone_deg) within 2"] {
+                    let (scenario, rule) =
+                        (Scenario::from_toml(&text).unwrap(), rule.parse().unwrap());
+                    let scenario = scenario.with_until(rule, look_every).unwrap();
+                    let again = Scenario::from_toml(&scenario.to_toml()).unwrap();
+                    for scenario in [&scenario, &again] {
+                        let until = scenario.until().unwrap();
+                        assert_eq!(until.most_runs(), most.unwrap_or(60), "{text}");
+                    }
+                    // A number of runs that is said is the greatest.
+                    let fewer = scenario.with_runs(90).unwrap();
+                    assert_eq!(fewer.until().unwrap().most_runs(), 90);
+                }
+            }
+        }
+    }
+}
