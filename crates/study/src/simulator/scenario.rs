@@ -69,7 +69,8 @@ impl SimulatorScenario {
         }
         // What was resolved stays as it is: the files may be elsewhere, and nothing may be left to be run.
         if !is_function && file.simulation.files_sha256.is_none() {
-            let given = file.simulation.folder.clone().unwrap_or_else(|| folder.to_owned());
+            let given = file.simulation.folder.take();
+            let given = given.map_or_else(|| folder.to_owned(), |given| folder.join(given));
             file.simulation.folder = Some(std::path::absolute(&given).unwrap_or(given));
             let program = program(&file)?;
             let files = program.files_sha256();

@@ -281,6 +281,31 @@ fn bodies_draw_what_payload_and_stage_do() {
     }
 }
 
+/// A relative folder is one of the scenario's, wherever the command is typed.
+#[test]
+fn a_folder_is_beside_the_scenario() {
+    let folder = folder();
+    let sub = folder.path().join("sub");
+    fs::create_dir(&sub).unwrap();
+    fs::write(sub.join("answer.sh"), SCRIPT.replace(":$x}}", ":7}}")).unwrap();
+    let here = std::env::current_dir().unwrap();
+    assert_ne!(here, folder.path());
+    let absolute = sub.to_str().unwrap();
+    for (place, given) in
+        [None, Some("."), Some("sub"), Some("./sub/../sub"), Some(absolute)].into_iter().enumerate()
+    {
+        let stated = given.map_or(String::new(), |given| format!("folder = {given:?}\n"));
+        let text = uniform().replace("[simulation]\n", &format!("[simulation]\n{stated}"));
+        let scenario = scenario(&text, folder.path()).with_runs(20).unwrap();
+        let options = Options::to(folder.path().join(place.to_string()));
+        let rows = scenario.study(&options, &|_| {}, &|_| {}).unwrap().rows();
+        let in_sub = given.is_some_and(|given| given.contains("sub"));
+        let seven = format!("{:x}", 7.0_f64.to_bits());
+        assert!(rows.iter().any(|row| row.contains(&seven)) == in_sub, "{given:?}: {rows:?}");
+        assert_eq!(rows.len(), 20);
+    }
+}
+
 /// A campaign that is stopped anywhere goes on to the same rows, can be extended, and is not mixed with runs of another
 /// simulator; its report is made again to the byte, and any run says the same alone.
 #[test]
