@@ -13,6 +13,7 @@ mod draw_robots;
 mod drivers;
 mod fit;
 mod fit_joint;
+mod fit_robots;
 mod fleet;
 mod kept;
 #[cfg(unix)]

@@ -24,7 +24,7 @@ pub struct InertiaFile {
     format: Format,
     pub(crate) bytes: Vec<u8>,
     pub(crate) offsets: Offsets,
-    default: Products,
+    products: Products,
     bodies: Vec<FileBody>,
     gaps: Vec<Gap>,
 }
@@ -77,7 +77,7 @@ impl InertiaFile {
         match parse(extension, has_none, &bytes, products) {
             Ok(Parsed { format, offsets, bodies, gaps }) => {
                 let (path, gaps) = (path.to_owned(), gaps.into_vec());
-                Ok(Self { path, format, bytes, offsets, default: products, bodies, gaps })
+                Ok(Self { path, format, bytes, offsets, products, bodies, gaps })
             }
             Err(refusal) => {
                 let bearing = bearing(extension, &refusal.problem, &bytes);
@@ -98,6 +98,11 @@ impl InertiaFile {
         self.format
     }
 
+    /// What its products of inertia are taken for where it does not say so.
+    pub(crate) fn products(&self) -> Products {
+        self.products
+    }
+
     /// The bodies, in the order of the file.
     #[must_use]
     pub fn bodies(&self) -> &[FileBody] {
@@ -112,7 +117,7 @@ impl InertiaFile {
 
     /// The same file with other bytes.
     pub(crate) fn reread(&self, bytes: Vec<u8>) -> Result<Self, FileError> {
-        Self::parse(&self.path, bytes, self.default)
+        Self::parse(&self.path, bytes, self.products)
     }
 }
 

@@ -158,6 +158,18 @@ fn named(body: &FileBody) -> &str {
     if body.name().is_empty() { "unnamed" } else { body.name() }
 }
 
+impl TryFrom<InertiaFile> for RobotFile {
+    type Error = RobotError;
+
+    /// The robot of a file that was read.
+    ///
+    /// # Errors
+    /// [`RobotError::Format`]: it is no robot's.
+    fn try_from(file: InertiaFile) -> Result<Self, RobotError> {
+        Self::new(file)
+    }
+}
+
 impl RobotFile {
     /// Whether a file is for a robot by its name, or, if its name tells nothing, by how it begins.
     #[must_use]
@@ -205,12 +217,12 @@ impl RobotFile {
         // What was read once is read again without an error.
         let text = Text::new(&file.bytes, false).map_err(|_| RobotError::Format { format })?;
         let tree = Tree::parse(&text).map_err(|_| RobotError::Format { format })?;
-        let angles = frame::angles(&tree);
+        let (angles, products) = (frame::angles(&tree), file.products());
         let geoms = Geoms::new(&tree, &angles);
         let mut names = Names::of(file.bodies());
         let mut links = Vec::new();
         let extension = known_extension(file.path());
-        let _ = robots::each(&tree, format, extension, Products::default(), |node, body| {
+        let _ = robots::each(&tree, format, extension, products, |node, body| {
             let of_body = holder(node, format).map(|body| inertials(body, format));
             let of_body = of_body.unwrap_or_default();
             let repeated = of_body.first().is_some_and(|first| *first != node);

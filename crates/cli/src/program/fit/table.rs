@@ -3,10 +3,11 @@
 use gyradius_dispersion::TenParameters;
 use gyradius_estimation::TenForm;
 use gyradius_formats::{
-    FileBody, FileBodyError, FileError, InertiaFile, Products, TOLERANCE, TenCentre, TenRow,
-    TenTable, TenTableError, judge,
+    FileBody, FileBodyError, FileError, Format, InertiaFile, LinkProblem, Products, RobotError,
+    RobotFile, TOLERANCE, TenCentre, TenRow, TenTable, TenTableError, judge,
 };
 use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties, Repair, RepairMethod};
+use nalgebra::Matrix3;
 use std::{collections::HashMap, path::Path};
 
 /// Why a table is not fitted.
@@ -14,6 +15,8 @@ use std::{collections::HashMap, path::Path};
 pub(super) enum TableError {
     #[error(transparent)]
     File(#[from] FileError),
+    #[error(transparent)]
+    Robot(#[from] RobotError),
     #[error("{place}: {error}")]
     Row { place: String, error: FileBodyError },
     #[error(
@@ -81,46 +84,31 @@ pub(super) fn read(
 ) -> Result<Table, TableError> {
     let file = InertiaFile::read(path, products)?;
     let place = path.display().to_string();
-    let (ten, unused) = ten(&file, &place, form)?;
+    let given = match file.format() {
+        Format::Urdf | Format::Mjcf | Format::Sdf => of_links(file, &place, form)?,
+        Format::Csv | Format::Toml | Format::Json => of_rows(&file, &place, form)?,
+    };
+    let Given { rows, whole, unused, unread } = given;
     let mut table = Table {
-        samples: Vec::with_capacity(file.bodies().len()),
-        lines: Vec::with_capacity(file.bodies().len()),
+        samples: Vec::with_capacity(rows.len()),
+        lines: Vec::with_capacity(rows.len()),
         aside: 0,
         rounded: 0,
-        bodies: ten.is_some().then(Vec::new),
+        bodies: whole.then(Vec::new),
         unused,
-        unread: file.gaps().iter().map(|gap| format!("line {}: {gap}", gap.line())).collect(),
+        unread,
     };
-    let mut refused: Option<(usize, &FileBody, String)> = None;
-    for (index, body) in file.bodies().iter().enumerate() {
-        let at = || format!("{place}:{}", body.line());
-        if let Some(label) = body.summary() {
-            return Err(TableError::Summary { place: at(), label: label.to_owned() });
+    let mut refused: Option<(usize, usize, String)> = None;
+    for (index, Row { line, matrix, ten }) in rows.into_iter().enumerate() {
+        if let Some(Err(mass)) = ten {
+            table.aside += 1;
+            refused.get_or_insert((index + 1, line, format!("mass = {mass} kg")));
+            continue;
         }
-        let mut matrix = *body.inertia().map_err(|error| row_error(at(), &error))?;
-        let mut of = None;
-        if let Some((ten, form)) = &ten {
-            let values = ten
-                .get(&body.line())
-                .ok_or_else(|| row_error(at(), &FileBodyError::Missing { field: "mass" }))?;
-            let values = values.as_ref().map_err(|error| row_error(at(), error))?;
-            match natural(*values, *form) {
-                Some(values) => {
-                    if *form == TenForm::Linear {
-                        matrix = *values.inertia.matrix();
-                    }
-                    of = Some(values);
-                }
-                None => {
-                    table.aside += 1;
-                    refused.get_or_insert((index + 1, body, format!("mass = {} kg", values[0])));
-                    continue;
-                }
-            }
-        }
+        let of = ten.and_then(Result::ok);
         if let Some(fault) = judge(&matrix, None, TOLERANCE).report().faults().first() {
             table.aside += 1;
-            refused.get_or_insert((index + 1, body, fault.to_string()));
+            refused.get_or_insert((index + 1, line, fault.to_string()));
             continue;
         }
         let (inertia, moved) = match Inertia::new(matrix) {
@@ -141,33 +129,114 @@ pub(super) fn read(
         let Some((inertia, whole)) = inertia.and_then(|inertia| Some((inertia, whole(inertia)?)))
         else {
             table.aside += 1;
-            refused.get_or_insert((index + 1, body, "out of range".to_owned()));
+            refused.get_or_insert((index + 1, line, "out of range".to_owned()));
             continue;
         };
         table.samples.push(inertia);
-        table.lines.push(body.line());
+        table.lines.push(line);
         table.rounded += moved;
         if let (Some(bodies), Some(whole)) = (&mut table.bodies, whole) {
             bodies.push(whole);
         }
     }
     match refused {
-        Some((index, body, reason)) if !skip => {
+        Some((index, line, reason)) if !skip => {
             let more = match table.aside {
                 1 => String::new(),
                 n => format!("and {} more; ", n - 1),
             };
-            let what = if ten.is_some() { "these mass properties" } else { "this inertia" };
+            let what =
+                if table.bodies.is_some() { "these mass properties" } else { "this inertia" };
             let reason = format!("no body has {what}: {reason}");
-            Err(TableError::Impossible {
-                place: format!("{place}:{}", body.line()),
-                index,
-                reason,
-                more,
-            })
+            Err(TableError::Impossible { place: format!("{place}:{line}"), index, reason, more })
         }
         _ => Ok(table),
     }
+}
+
+/// A sample as a file has it.
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    line: usize,
+    /// About the mass centre.
+    matrix: Matrix3<f64>,
+    /// With mass and mass centre, if the file has them, or the mass that none has.
+    ten: Option<Result<TenParameters, f64>>,
+}
+
+/// The samples of a file.
+#[derive(Debug)]
+struct Given {
+    rows: Vec<Row>,
+    /// Whether each has a mass and a mass centre.
+    whole: bool,
+    unused: Vec<String>,
+    unread: Vec<String>,
+}
+
+/// The links of a robot, in their own axes, to which the frames of their inertias are turned.
+fn of_links(file: InertiaFile, place: &str, form: Option<TenForm>) -> Result<Given, TableError> {
+    if form == Some(TenForm::Linear) {
+        return Err(TableError::NotLinear { place: place.to_owned() });
+    }
+    let robot = RobotFile::try_from(file)?;
+    let gaps = robot.gaps().iter().map(|gap| format!("line {}: {gap}", gap.line()));
+    let mut unread: Vec<String> = gaps.collect();
+    let mut rows = Vec::with_capacity(robot.links().len());
+    for link in robot.links() {
+        let line = link.line();
+        match link.numbers() {
+            Ok(numbers) => {
+                let inertia = *numbers.inertia();
+                let (mass_kg, mass_centre_m) = (numbers.mass_kg(), numbers.mass_centre_m());
+                let ten = TenParameters { mass_kg, mass_centre_m, inertia };
+                let ten = if mass_kg > 0.0 { Ok(ten) } else { Err(mass_kg) };
+                rows.push(Row { line, matrix: *inertia.matrix(), ten: Some(ten) });
+            }
+            Err(LinkProblem::Body(error)) => {
+                return Err(row_error(format!("{place}:{line}"), error));
+            }
+            Err(problem) => unread.push(format!("line {line}: {}: {problem}", link.name())),
+        }
+    }
+    let without = robot.links_without_inertia().iter();
+    unread.extend(without.map(|name| format!("{name}: no inertia in the file")));
+    unread.extend(robot.overridden_by().map(|told| {
+        format!("the compiler says {told}: MuJoCo takes other numbers than those of the bodies")
+    }));
+    unread.extend(robot.compiler_doubts().iter().map(ToString::to_string));
+    Ok(Given { rows, whole: true, unused: Vec::new(), unread })
+}
+
+/// The rows of a table, or the bodies of a document.
+fn of_rows(file: &InertiaFile, place: &str, form: Option<TenForm>) -> Result<Given, TableError> {
+    let (ten, unused) = ten(file, place, form)?;
+    let row = |body: &FileBody| {
+        let at = || format!("{place}:{}", body.line());
+        if let Some(label) = body.summary() {
+            return Err(TableError::Summary { place: at(), label: label.to_owned() });
+        }
+        let mut row = Row {
+            line: body.line(),
+            matrix: *body.inertia().map_err(|error| row_error(at(), &error))?,
+            ten: None,
+        };
+        if let Some((ten, form)) = &ten {
+            let values = ten
+                .get(&body.line())
+                .ok_or_else(|| row_error(at(), &FileBodyError::Missing { field: "mass" }))?;
+            let values = values.as_ref().map_err(|error| row_error(at(), error))?;
+            let natural = natural(*values, *form);
+            if let (Some(values), TenForm::Linear) = (&natural, form) {
+                row.matrix = *values.inertia.matrix();
+            }
+            row.ten = Some(natural.ok_or(values[0]));
+        }
+        Ok(row)
+    };
+    let rows = file.bodies().iter().map(row).collect::<Result<_, _>>()?;
+    let unread = file.gaps().iter().map(|gap| format!("line {}: {gap}", gap.line())).collect();
+    Ok(Given { rows, whole: ten.is_some(), unused, unread })
 }
 
 fn row_error(place: String, error: &FileBodyError) -> TableError {

@@ -1,0 +1,139 @@
+//! Samples in robot files: links whose inertias stand in frames of their own.
+
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use serde_json::Value;
+use std::{fmt::Write, fs};
+
+use crate::scratch::Scratch;
+
+/// The same bodies as a table and as links, whose frames are turned.
+struct Bodies {
+    table: String,
+    urdf: String,
+    mjcf: String,
+    sdf: String,
+}
+
+impl Bodies {
+    /// Sixty bodies that scatter in everything, by fixed irrational steps.
+    fn new() -> Self {
+        let mut all = Self {
+            table: "name,mass,cx,cy,cz,ixx,iyy,izz,ixy,ixz,iyz\n".to_owned(),
+            urdf: String::new(),
+            mjcf: String::new(),
+            sdf: String::new(),
+        };
+        for i in 0..60 {
+            // Between −1 and 1, as even as a sequence is.
+            let step = |k: u32| {
+                let place = f64::from(i + 1) * f64::from(k).sqrt();
+                2.0 * (place - place.floor()) - 1.0
+            };
+            let mass = 2.0 + 0.1 * step(2);
+            let c = Vector3::new(0.1 + 0.01 * step(3), 0.02 * step(5), -0.2 + 0.01 * step(6));
+            let k =
+                [1.0 + 0.05 * step(7), 1.4 + 0.05 * step(8), 1.7 + 0.05 * step(10)].map(|k| k * k);
+            let moments = Vector3::new(k[1] + k[2], k[0] + k[2], k[0] + k[1]);
+            let q =
+                UnitQuaternion::from_scaled_axis(0.2 * Vector3::new(step(11), step(12), step(13)));
+            let matrix = q.to_rotation_matrix().into_inner();
+            let inertia = matrix * Matrix3::from_diagonal(&moments) * matrix.transpose();
+            let entry = |(a, b)| inertia[(a, b)];
+            let six = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(entry);
+            let six = six.map(|x| format!("{x:?}")).join(",");
+            let [x, y, z] = [c.x, c.y, c.z];
+            let [a, b, d] = [moments.x, moments.y, moments.z];
+            writeln!(all.table, "b{i},{mass:?},{x:?},{y:?},{z:?},{six}").unwrap();
+            let (roll, pitch, yaw) = q.euler_angles();
+            writeln!(
+                all.urdf,
+                "<link name=\"b{i}\"><inertial><origin xyz=\"{x:?} {y:?} {z:?}\" rpy=\"{roll:?} {pitch:?} {yaw:?}\"/><mass value=\"{mass:?}\"/>\
+                 <inertia ixx=\"{a:?}\" iyy=\"{b:?}\" izz=\"{d:?}\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>"
+            )
+            .unwrap();
+            let [w, i1, j1, k1] = [q.w, q.i, q.j, q.k];
+            writeln!(
+                all.mjcf,
+                "<body name=\"b{i}\"><inertial mass=\"{mass:?}\" pos=\"{x:?} {y:?} {z:?}\" quat=\"{w:?} {i1:?} {j1:?} {k1:?}\" \
+                 diaginertia=\"{a:?} {b:?} {d:?}\"/></body>"
+            )
+            .unwrap();
+            writeln!(
+                all.sdf,
+                "<link name=\"b{i}\"><inertial><mass>{mass:?}</mass><pose>{x:?} {y:?} {z:?} {roll:?} {pitch:?} {yaw:?}</pose>\
+                 <inertia><ixx>{a:?}</ixx><iyy>{b:?}</iyy><izz>{d:?}</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial></link>"
+            )
+            .unwrap();
+        }
+        all
+    }
+}
+
+/// All numbers of a document, by their paths.
+fn numbers(value: &Value, path: &str, found: &mut Vec<(String, f64)>) {
+    match value {
+        Value::Number(x) => found.push((path.to_owned(), x.as_f64().unwrap())),
+        Value::Array(all) => {
+            all.iter()
+                .enumerate()
+                .for_each(|(i, one)| numbers(one, &format!("{path}[{i}]"), found));
+        }
+        Value::Object(all) => {
+            all.iter().for_each(|(key, one)| numbers(one, &format!("{path}.{key}"), found));
+        }
+        Value::Null | Value::Bool(_) | Value::String(_) => {}
+    }
+}
+
+/// A law is fitted to the bodies in the axes of their links, with mass and mass centre, whatever frames their inertias stand in.
+#[test]
+fn links_are_samples_in_their_own_axes() {
+    let bodies = Bodies::new();
+    let scratch = Scratch::new();
+    let fitted = |name: &str, text: &str| {
+        fs::write(scratch.path(name), text).unwrap();
+        let output = scratch.run(&["fit", name, "--format", "json"]);
+        let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(document["samples"], 60, "{name}");
+        assert!(document["joint"].is_object(), "{name}");
+        document
+    };
+    let expected = fitted("b.csv", &bodies.table);
+    assert!(expected["roots"][0]["deviation_sqrt_kg_m"].as_f64().unwrap() > 0.02);
+    let urdf = |links: &str| format!("<robot name=\"r\">{links}</robot>");
+    let mjcf = |links: &str| format!("<mujoco><worldbody>{links}</worldbody></mujoco>");
+    let sdf = |links: &str| format!("<sdf version=\"1.9\"><model name=\"m\">{links}</model></sdf>");
+    for (name, text) in
+        [("b.urdf", urdf(&bodies.urdf)), ("b.xml", mjcf(&bodies.mjcf)), ("b.sdf", sdf(&bodies.sdf))]
+    {
+        let found = fitted(name, &text);
+        assert_eq!(found["unread"].as_array().unwrap().len(), 0, "{name}: {}", found["unread"]);
+        let (mut wanted, mut given) = (Vec::new(), Vec::new());
+        for key in ["roots", "axes", "entries", "joint"] {
+            numbers(&expected[key], key, &mut wanted);
+            numbers(&found[key], key, &mut given);
+        }
+        assert_eq!(wanted.len(), given.len(), "{name}");
+        assert!(wanted.len() > 60, "{name}");
+        for ((path, a), (_, b)) in wanted.iter().zip(&given) {
+            // Probabilities are found by simulation, of which rounding may turn a few.
+            let close = if path.ends_with("p_value") || path.ends_with(".p") { 0.02 } else { 1e-6 };
+            assert!((a - b).abs() <= close * a.abs().max(1.0), "{name}: {path}: {a} {b}");
+        }
+    }
+    // What is no link's own is no sample, and is named.
+    let block = "<gazebo reference=\"b0\"><inertial><mass value=\"1\"/><inertia ixx=\"9\" iyy=\"9\" izz=\"9\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/>\
+                 </inertial></gazebo><link name=\"empty\"/>";
+    let found = fitted("g.urdf", &urdf(&(bodies.urdf.clone() + block)));
+    let unread = found["unread"].to_string();
+    assert!(unread.contains("Gazebo") && unread.contains("empty"), "{unread}");
+    let computed = format!(
+        "<mujoco><compiler inertiafromgeom=\"true\"/><worldbody>{}</worldbody></mujoco>",
+        bodies.mjcf
+    );
+    let unread = fitted("c.xml", &computed)["unread"].to_string();
+    assert!(unread.contains("inertiafromgeom"), "{unread}");
+    fs::write(scratch.path("l.urdf"), urdf(&bodies.urdf)).unwrap();
+    let refused = scratch.run(&["fit", "l.urdf", "--parameters", "linear"]);
+    assert_eq!(refused.status.code(), Some(2));
+}
