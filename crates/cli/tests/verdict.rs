@@ -110,6 +110,53 @@ fn of_vehicles_the_first_flights_are_judged() {
             let more = "  more         140 more vehicles would show that it is met";
             assert_eq!(said.contains(more), of_fleet, "{said}");
             assert!(!said.contains("more runs"), "{said}");
+            // A copy elsewhere tells which flights are the first, whatever columns are kept.
+            let copy = format!("copy-{out}");
+            fs::create_dir(scratch.path(&copy)).unwrap();
+            for block in fs::read_dir(scratch.path(&table)).unwrap() {
+                let block = block.unwrap();
+                fs::copy(block.path(), scratch.path(&copy).join(block.file_name())).unwrap();
+            }
+            let said = scratch.run(&["verdict", &copy, "--require", REQUIRE]);
+            let (said, warned) = (String::from_utf8(said.stdout), String::from_utf8(said.stderr));
+            let (said, warned) = (said.unwrap(), warned.unwrap());
+            assert!(said.contains("90 first flights") && warned.is_empty(), "{said}{warned}");
+        }
+        // In any letters, but not if two columns are called so.
+        let rows: String =
+            (0..450).map(|run| format!("{run},{},{},1.0,ok,{run}\n", run / 5, run % 5)).collect();
+        for (names, first) in [
+            (["run", "vehicle", "flight"], true),
+            (["RUN", "VEHICLE", "FLIGHT"], true),
+            (["Run", " vehicle", "Flight "], true),
+            (["run", "vehicle", "sortie"], false),
+            (["run", "craft", "flight"], false),
+            (["shot", "Vehicle", "flight"], false),
+        ] {
+            for other in ["other", "VEHICLE"] {
+                let names = names.join(",");
+                fs::write(scratch.path("letters.csv"), format!("{names},y,status,{other}\n{rows}"))
+                    .unwrap();
+                let said =
+                    scratch.run(&["verdict", "letters.csv", "--require", "y <= 5 in 90 % at 90 %"]);
+                let (said, warned) =
+                    (String::from_utf8(said.stdout), String::from_utf8(said.stderr));
+                let (said, warned) = (said.unwrap(), warned.unwrap());
+                let first = first && (other == "other" || names == "run,vehicle,flight");
+                if names == "RUN,VEHICLE,FLIGHT" && other == "VEHICLE" {
+                    continue;
+                }
+                assert_eq!(
+                    said.contains("90 first flights"),
+                    first,
+                    "{names} {other}: {said}{warned}"
+                );
+                assert_eq!(
+                    warned.contains("not all three columns"),
+                    !first,
+                    "{names} {other}: {said}{warned}"
+                );
+            }
         }
         // Some rows of the table, in which no vehicle is whole, tell nothing of whole vehicles.
         let all = |of: u32| (0..450).filter(move |run| of == 1 || run % of != 2);

@@ -15,8 +15,9 @@ pub(crate) const HEAVY: f64 = 10.0;
 pub(crate) const NEAR: f64 = 0.01;
 /// A share of the drawn bodies: more of them must be near the boundary, that it is told.
 const MANY: f64 = 0.001;
-/// A factor between the mean of a law and the nominal value beside it that nobody means.
-const FAR: f64 = 10.0;
+/// A factor between the mean of a law and the nominal value beside it that nobody means: a decimal point that slipped makes ten, but for
+/// the rounding and the spread of the law.
+const FAR: f64 = 10.0 * (1.0 - 1e-6);
 /// Degrees between the angular momentum at the start and the spin axis: from here on, another principal axis may be nearer.
 const OFF_AXIS_DEG: f64 = 45.0;
 /// Outcomes with heavy tails that are named.

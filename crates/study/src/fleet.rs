@@ -73,24 +73,28 @@ impl Fleet {
         const OTHER: &str = "the columns run, vehicle and flight do not belong together as in the run table of a study, where the run is \
                              the vehicle times the flights of each plus the flight, all from 0: all rows are judged as runs that are \
                              independent of each other, which flights of one vehicle need not be";
-        let [vehicle, flight] = Self::columns().map(|column| column.name().to_owned());
-        let names = [Column::RUN.to_owned(), vehicle, flight];
         again(&table)?;
-        let of_vehicles = |name: &&String| name.trim().eq_ignore_ascii_case(&names[1]);
-        let Some(vehicles) = table.columns().iter().find(of_vehicles) else {
-            return Ok((table, None));
-        };
         if table.campaign().is_some() {
             return Ok((table, None));
         }
-        if !names.iter().all(|name| table.columns().contains(name)) {
+        let [vehicle, flight] = Self::columns();
+        let alike = |own: &Column| table.columns().iter().find(|name| is_alike(name, own.name()));
+        // A column of flights alone may be any program's.
+        let flights = || alike(&flight).filter(|_| table.is_run_table());
+        let Some(there) = alike(&vehicle).or_else(flights) else {
+            return Ok((table, None));
+        };
+        let [Some(run), Some(vehicle), Some(flight)] =
+            [Column::RUN, vehicle.name(), flight.name()].map(|own| named(&table, own))
+        else {
             let lost = format!(
-                "the table has the column {vehicles}, but not all three columns run, vehicle and flight of a study's run table: all rows are \
-                 judged as runs that are independent of each other, which flights of one vehicle need not be; with the three, the first \
+                "the table has the column {there}, but not all three columns run, vehicle and flight of a study's run table, once each: all rows \
+                 are judged as runs that are independent of each other, which flights of one vehicle need not be; with the three, the first \
                  flight of each vehicle is judged"
             );
             return Ok((table, Some(lost.into())));
-        }
+        };
+        let names = [run, vehicle, flight];
         let mut seen = SeenFlights::default();
         let read = table.scan_beside(&[], &names, |columns| {
             let [runs, vehicles, flights] = columns else { return };
@@ -135,16 +139,24 @@ impl Fleet {
     }
 }
 
+/// Whether a heading is that of a run table's column, in any letters.
+fn is_alike(heading: &str, own: &str) -> bool {
+    heading.trim().eq_ignore_ascii_case(own)
+}
+
+/// What a table calls one of a run table's columns, in any letters: none if several are called so, and none of them in its own.
+fn named(table: &ForeignTable, own: &str) -> Option<String> {
+    let exact = table.columns().iter().find(|name| *name == own);
+    let mut alike = table.columns().iter().filter(|name| is_alike(name, own));
+    exact.or_else(|| alike.next().filter(|_| alike.next().is_none())).cloned()
+}
+
 /// That no flight stands twice in a table without a column `model`, which names its rows by their run, vehicle and flight. Of one with a model, judging
 /// tells.
 fn again(table: &ForeignTable) -> Result<(), ForeignError> {
-    let named = |own: &str| {
-        let mut alike = table.columns().iter().filter(|name| name.trim().eq_ignore_ascii_case(own));
-        alike.next().filter(|_| alike.next().is_none()).cloned()
-    };
-    let [vehicle, flight] = Fleet::columns().map(|column| named(column.name()));
+    let [vehicle, flight] = Fleet::columns().map(|column| named(table, column.name()));
     let (None, Some(run), Some(vehicle), Some(flight)) =
-        (named("model"), named(Column::RUN), vehicle, flight)
+        (named(table, "model"), named(table, Column::RUN), vehicle, flight)
     else {
         return Ok(());
     };

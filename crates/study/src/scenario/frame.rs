@@ -273,7 +273,14 @@ macro_rules! framed {
             /// What is kept of its run tables once all runs are done.
             #[must_use]
             pub fn kept(&self) -> Kept {
-                Kept::new(self.file.rows, self.file.columns.clone())
+                // Which runs are of one vehicle is needed to judge them.
+                let own = self.size.fleet().map(|_| Fleet::columns());
+                let own = own.into_iter().flatten().map(|column| column.name().to_owned());
+                let columns = self.file.columns.clone();
+                Kept::new(
+                    self.file.rows,
+                    columns.map(|named| named.into_iter().chain(own).collect()),
+                )
             }
         }
 
