@@ -2,7 +2,7 @@
 
 use gyradius_campaign::{
     Bound, Cell, Column, Counting, FailedRuns, Failure, ForeignTable, Judgement, Judging, Looks,
-    Measured, Requirement, Runs, Table,
+    Measured, Requirement, Runs, Table, Verdict,
 };
 use gyradius_statistics::{Acceptance, Confidence};
 use proptest::prelude::*;
@@ -372,6 +372,48 @@ fn what_is_said_of_a_judgement_is_true() {
 }
 
 proptest! {
+    /// So many further runs as are told suffice if the shares of all runs that fail and that are left out stay as they are, and no
+    /// fewer do: by trying one after the other, of runs and of vehicles.
+    #[test]
+    fn further_runs_are_of_all_runs(
+        (n, left_out) in (1..150_u64, 0.0..1.0_f64),
+        (probability, confidence, failing) in (0.3..0.99_f64, 0.5..0.99_f64, 0.0..0.98_f64),
+        (against, group) in (any::<bool>(), 1..4_u64),
+    ) {
+        let left_out = (left_out * n as f64) as u64;
+        let counted = if against { n } else { n - left_out };
+        let failures = (failing * (1.0 - probability) * counted as f64) as u64;
+        let failed = if against { FailedRuns::Against } else { FailedRuns::LeftOut };
+        let requirement = Requirement::new("it", Measured::column("x"), Bound::AtMost(1.0), probability, confidence);
+        let requirement = [requirement.unwrap().with_failed_runs(failed)];
+        let without = if against { failures.min(left_out) } else { left_out };
+        let beyond = without + failures - if against { without } else { 0 };
+        let row = |run: u64| match run / group {
+            it if it < without => format!("{run},\n"),
+            it if it < beyond => format!("{run},2\n"),
+            _ => format!("{run},0\n"),
+        };
+        let text = format!("run,x\n{}", (0..n * group).map(row).collect::<String>());
+        let table = ForeignTable::read_csv("it".as_ref(), text.as_bytes()).unwrap();
+        let judged = Judgement::of_table(&requirement, &table.counted(Counting::new(Looks::Once, group))).unwrap();
+        prop_assert_eq!([judged[0].counted(), judged[0].failures()], [counted, failures]);
+        let rule = Acceptance::new(probability, Confidence::new(confidence).unwrap()).unwrap();
+        let met = |runs: u64| {
+            let counting = runs * counted / n;
+            rule.allowed_failures(counting).is_some_and(|may| (counting * failures).div_ceil(counted) <= may)
+        };
+        if let Verdict::Undecided { if_no_more_fail, at_this_rate } = judged[0].verdict() {
+            prop_assert!(at_this_rate.is_none_or(|more| met(n + more)));
+            let few = at_this_rate.filter(|more| *more < 2000);
+            prop_assert_eq!(few.and_then(|more| (n..=n + more).find(|runs| met(*runs))), few.map(|more| n + more));
+            let allow = |more: &u64| rule.allowed_failures(counted + more).is_some_and(|may| failures <= may);
+            prop_assert_eq!((0..).find(allow), if_no_more_fail);
+            let told = judged[0].to_string();
+            let is_told = at_this_rate.is_some_and(|_| counted < n && at_this_rate != if_no_more_fail);
+            prop_assert_eq!(told.contains("are left out stay as they are"), is_told, "{}", told);
+        }
+    }
+
     /// A vehicle that keeps it in the share that is said passes nine times in ten, and one that keeps it a little less often does not.
     #[test]
     fn the_share_to_pass_passes(n in 60..3000_usize, probability in 0.5..0.95_f64) {

@@ -444,7 +444,11 @@ fn verdict(judged: &Judged) -> PageCell {
                 Text::default().quiet(format!("{runs} more {} {how}", judgement.unit_of_more(runs)))
             };
             let all = if_no_more_fail.map(|runs| more(runs, "if all keep it"));
-            let rate = at_this_rate.map(|runs| more(runs, "if failures go on at this rate"));
+            let if_so = match judgement.leaves_runs_out() {
+                true => "if failures and runs that are left out go on at this rate",
+                false => "if failures go on at this rate",
+            };
+            let rate = at_this_rate.map(|runs| more(runs, if_so));
             let again = judgement.asks_for_another_look().then(|| {
                 let said = "judging a second time adds a risk of its own; [until] of the scenario counts all looks";
                 Text::default().quiet(said)

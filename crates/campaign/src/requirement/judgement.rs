@@ -119,7 +119,7 @@ impl Judgement {
                 .map(|(m, s)| m / s),
             mean: numbers.mean(),
             standard_deviation,
-            verdict: deciding.verdict(failures, counted)?,
+            verdict: of_all_runs(deciding.verdict(failures, counted)?, tally.runs, counted),
             success_to_pass: deciding.success_to_pass(counted)?,
             worst: tally.worst.clone(),
             distribution: Distribution::new(
@@ -177,10 +177,16 @@ impl Judgement {
         &self.requirement
     }
 
-    /// The verdict.
+    /// The verdict. What it says of further runs is of all of them: if failures go on at the same rate, so do runs that are left out.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         self.verdict
+    }
+
+    /// Whether some of the runs do not count.
+    #[must_use]
+    pub fn leaves_runs_out(&self) -> bool {
+        self.counted < self.runs
     }
 
     /// Runs that count.
@@ -341,7 +347,11 @@ impl fmt::Display for Judgement {
             };
             let all = if_no_more_fail.map(|runs| met(runs, "if all of them keep it"));
             let rate = at_this_rate.filter(|runs| Some(*runs) != if_no_more_fail);
-            let rate = rate.map(|runs| met(runs, "if the share that fails stays as it is"));
+            let if_so = match self.leaves_runs_out() {
+                true => "if the shares that fail and that are left out stay as they are",
+                false => "if the share that fails stays as it is",
+            };
+            let rate = rate.map(|runs| met(runs, if_so));
             f.write_str(&(all.unwrap_or_default() + &rate.unwrap_or_default()))?;
             if self.asks_for_another_look() {
                 writeln!(
@@ -433,6 +443,24 @@ impl fmt::Display for VehiclesKeeping {
         let (lower, upper) = (percent_or_less(interval.lower()), percent_or_more(interval.upper()));
         let confidence = stated_in_percent(interval.confidence().level());
         write!(f, " ({confidence} interval: {lower} to {upper})")
+    }
+}
+
+/// A verdict on the runs that count, in further runs of all: of them, too, some are left out, if rates stay as they are.
+fn of_all_runs(verdict: Verdict, runs: u64, counted: u64) -> Verdict {
+    match verdict {
+        Verdict::Met | Verdict::NotMet => verdict,
+        Verdict::Undecided { if_no_more_fail, at_this_rate } => {
+            // The fewest runs of which so many count, if as large a share of them does as so far.
+            let runs_of = |counting: u64| {
+                let all = (u128::from(counting) * u128::from(runs)).div_ceil(counted.into());
+                u64::try_from(all).ok()
+            };
+            let at_this_rate = at_this_rate.filter(|_| counted > 0);
+            let at_this_rate = at_this_rate.and_then(|more| Some(runs_of(counted + more)? - runs));
+            // Runs that keep a requirement count.
+            Verdict::Undecided { if_no_more_fail, at_this_rate }
+        }
     }
 }
 
