@@ -147,7 +147,8 @@ pub(crate) fn judged<C: Subject>(
         let model = runs.model();
         let judged = judging.finish(runs)?;
         let worst = judged.iter().flat_map(named).map(|(run, _)| run).collect();
-        let (drawn, rounding) = without_rounding(scenario.drawn_inputs(summary, model));
+        let drawn = scenario.drawn_inputs(summary, model);
+        let (drawn, rounding) = without_rounding(drawn, &scenario.inertias());
         let moves = |column: &&String| !rounding.iter().any(|input| input.column == **column);
         let inputs: Vec<String> = inputs.iter().filter(moves).cloned().collect();
         let found = unusual(&drawn, &worst, runs)?;

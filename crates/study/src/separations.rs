@@ -6,7 +6,9 @@ use rayon::ThreadPool;
 use std::sync::{Arc, atomic::AtomicBool};
 
 use crate::{
-    Scenario, ScenarioError, StudyError, Summary, claims,
+    Scenario, ScenarioError, StudyError, Summary,
+    body::{Body, Entry},
+    claims,
     column::Column as Declared,
     compare::Section,
     figures_of_study,
@@ -92,6 +94,11 @@ impl Subject for Scenario {
         let drawn = drawn.map(|column| column.declaration(&names));
         let numbers = drawn.filter(|column| column.kind() == Kind::Number);
         numbers.map(|column| column.name().to_owned()).collect()
+    }
+
+    fn inertias(&self) -> Vec<[String; 6]> {
+        let column = |body, entry| Quantity::entry(body, entry).column().into_owned();
+        Body::BOTH.map(|body| Entry::ALL.map(|entry| column(body, entry))).into()
     }
 
     fn main_outcomes(&self) -> Vec<String> {

@@ -65,6 +65,8 @@ pub(crate) trait Subject: Framed + Sync {
     fn is_outcome(&self, column: &Column) -> bool;
     /// The columns of numbers that are drawn for a run.
     fn drawn_columns(&self) -> Vec<String>;
+    /// The columns of the entries of the inertia of each body, which are held against each other.
+    fn inertias(&self) -> Vec<[String; 6]>;
     /// The columns of the outcomes that are told of first.
     fn main_outcomes(&self) -> Vec<String>;
     /// A look at the runs of a model, which have these columns.

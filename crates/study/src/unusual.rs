@@ -1,10 +1,9 @@
 //! What is unusual among what the worst runs have drawn.
 
 use gyradius_campaign::{Runs, RunsError};
-use gyradius_dispersion::TenParameters;
 use serde::{Deserialize, Serialize};
 use std::{
-    collections::{BTreeMap, BTreeSet},
+    collections::BTreeSet,
     sync::{Mutex, PoisonError},
 };
 
@@ -34,19 +33,24 @@ pub(crate) struct UnusualInput {
 const ROUNDING: f64 = 1e-12;
 
 /// The inputs whose deviation is more than rounding, and those of which it is rounding alone: of an entry of an inertia,
-/// beside the largest of the six.
-pub(crate) fn without_rounding(inputs: Vec<DrawnInput>) -> (Vec<DrawnInput>, Vec<DrawnInput>) {
-    let whole = |column: &str| {
-        let entry = TenParameters::COLUMNS[4..].iter().find_map(|e| column.strip_suffix(e));
-        entry.unwrap_or(column).to_owned()
+/// beside the largest of the six. `inertias` are the columns of each.
+pub(crate) fn without_rounding(
+    inputs: Vec<DrawnInput>,
+    inertias: &[[String; 6]],
+) -> (Vec<DrawnInput>, Vec<DrawnInput>) {
+    let size = |input: &DrawnInput| input.mean.abs() + input.deviation;
+    let size_of_whole = |input: &DrawnInput| {
+        let entries = inertias.iter().find(|entries| entries.contains(&input.column));
+        let beside =
+            inputs.iter().filter(|other| entries.is_some_and(|e| e.contains(&other.column)));
+        beside.map(size).fold(size(input), f64::max)
     };
-    let mut sizes = BTreeMap::<String, f64>::new();
-    for input in &inputs {
-        let size = sizes.entry(whole(&input.column)).or_default();
-        *size = size.max(input.mean.abs() + input.deviation);
-    }
-    let moves = |input: &DrawnInput| input.deviation > ROUNDING * sizes[&whole(&input.column)];
-    inputs.into_iter().partition(moves)
+    let moves = inputs.iter().map(|input| input.deviation > ROUNDING * size_of_whole(input));
+    let moves: Vec<bool> = moves.collect();
+    let (moving, rounding): (Vec<_>, Vec<_>) =
+        inputs.into_iter().zip(moves).partition(|(_, moves)| *moves);
+    let inputs = |of: Vec<(DrawnInput, bool)>| of.into_iter().map(|(input, _)| input).collect();
+    (inputs(moving), inputs(rounding))
 }
 
 /// A number that runs draw, with its mean and standard deviation over the runs.
@@ -100,6 +104,11 @@ mod tests {
     use gyradius_campaign::{Cell, Column, Table};
     use proptest::prelude::*;
 
+    /// The columns of the inertia of a body.
+    fn entries(body: &str) -> [String; 6] {
+        ["11", "22", "33", "12", "13", "23"].map(|entry| format!("{body}_i{entry}"))
+    }
+
     /// Entries of an inertia are held against each other, other inputs each against itself.
     #[test]
     fn rounding_is_no_input() {
@@ -115,13 +124,43 @@ mod tests {
         ];
         let input =
             |(column, mean, deviation)| DrawnInput::new(column, Some(mean), Some(deviation));
-        let (moving, rounding) = without_rounding(all.into_iter().filter_map(input).collect());
+        let inputs = all.into_iter().filter_map(input).collect();
+        let (moving, rounding) = without_rounding(inputs, &["payload", "stage"].map(entries));
         assert_eq!(moving.len() + rounding.len(), all.len());
         let found: Vec<&str> = moving.iter().map(|input| input.column.as_str()).collect();
         assert_eq!(
             found,
             ["payload_i11", "payload_i13", "stage_i11", "stage_i23", "thrust_1", "thrust_2"]
         );
+    }
+
+    proptest! {
+        /// Numbers whose names end as entries of an inertia do are none unless a body has them: whatever they are called, each moves or
+        /// not as it would alone.
+        #[test]
+        fn numbers_called_as_entries_are_no_inertia(
+            sizes in prop::collection::vec((-20..20_i32, -20..4_i32), 12),
+            bodies in prop::collection::vec(any::<bool>(), 2),
+        ) {
+            let names: Vec<[String; 6]> = ["sensor", "payload"].map(entries).into();
+            let input = |(name, (mean, share)): (&String, &(i32, i32))| {
+                let mean = 10_f64.powi(*mean);
+                DrawnInput::new(name, Some(mean), Some(mean * 10_f64.powi(*share))).unwrap()
+            };
+            let inputs: Vec<DrawnInput> = names.as_flattened().iter().zip(&sizes).map(input).collect();
+            let inertias: Vec<[String; 6]> =
+                names.iter().zip(&bodies).filter(|(_, is_body)| **is_body).map(|(names, _)| names.clone()).collect();
+            let (moving, rounding) = without_rounding(inputs.clone(), &inertias);
+            prop_assert_eq!(moving.len() + rounding.len(), inputs.len());
+            for (six, is_body) in inputs.chunks(6).zip(&bodies) {
+                let size = |input: &DrawnInput| input.mean.abs() + input.deviation;
+                let largest = six.iter().map(size).fold(0.0, f64::max);
+                for input in six {
+                    let beside = if *is_body { largest } else { size(input) };
+                    prop_assert_eq!(moving.contains(input), input.deviation > 1e-12 * beside);
+                }
+            }
+        }
     }
 
     proptest! {

@@ -13,7 +13,9 @@ use std::{
     sync::{Arc, atomic::AtomicBool},
 };
 
-use super::{draws::SimulatorDraws, looking::Looking, scenario::SimulatorScenario};
+use super::{
+    body::SimulatedBody, draws::SimulatorDraws, looking::Looking, scenario::SimulatorScenario,
+};
 use crate::{
     Notice, Options, ScenarioError, Study, StudyError,
     alerts::{self, Alert},
@@ -27,8 +29,6 @@ use crate::{
     unusual::DrawnInput,
 };
 
-/// Unit of the entries of inertia matrices.
-const ENTRY: &str = "kg·m²";
 /// Outputs that are told of first.
 const MAIN: usize = 4;
 
@@ -233,6 +233,10 @@ impl Subject for SimulatorScenario {
         self.inputs().map(|column| column.name().to_owned()).collect()
     }
 
+    fn inertias(&self) -> Vec<[String; 6]> {
+        self.bodies().iter().map(SimulatedBody::entries).collect()
+    }
+
     fn main_outcomes(&self) -> Vec<String> {
         self.outputs().iter().map(|column| column.name().to_owned()).take(MAIN).collect()
     }
@@ -278,15 +282,10 @@ impl Subject for SimulatorScenario {
             return Vec::new();
         };
         // Not the components of attitudes, which are no scores.
-        let dispersed = &self.dispersed().all;
-        let inputs: Vec<Column> = self
-            .inputs()
-            .filter(|column| {
-                column.unit() == Some(ENTRY) || dispersed.iter().any(|d| d.column == column.name())
-            })
-            .collect();
+        let dispersed = self.dispersed().all.iter().map(|dispersed| dispersed.column.clone());
+        let inputs: Vec<String> = dispersed.chain(self.inertias().into_iter().flatten()).collect();
         let drawn = overview.quantities();
-        let drawn = drawn.filter(|(name, ..)| inputs.iter().any(|column| column.name() == *name));
+        let drawn = drawn.filter(|(name, ..)| inputs.iter().any(|column| column == name));
         let input = |(name, _, samples): (&str, &str, &[SampleSummary])| {
             let sample = samples.get(place)?;
             DrawnInput::new(name, sample.mean, sample.deviation)
