@@ -130,7 +130,7 @@ pub use requirement::{
 pub use room::disk_left;
 pub use runs::Runs;
 pub use runs_error::RunsError;
-pub use sample::{SampleSummary, bounded, varies};
+pub use sample::{SampleSummary, bounded};
 pub use shard::{Shard, ShardError};
 pub use share::{Share, counted};
 pub use simulation::{CampaignError, Progress, Simulation, go_on, run, threads};

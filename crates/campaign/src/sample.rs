@@ -69,17 +69,6 @@ impl SampleSummary {
     }
 }
 
-/// A spread that is a smaller share of the numbers is rounding.
-const ROUNDING: f64 = 1e-11;
-
-/// Whether numbers from a smallest to a largest one differ by more than rounding changes numbers of their size, or of this scale,
-/// such as one degree of angles.
-#[must_use]
-pub fn varies(minimum: f64, maximum: f64, scale: f64) -> bool {
-    let size = minimum.abs().max(maximum.abs()).max(scale);
-    maximum / size - minimum / size > ROUNDING
-}
-
 /// Probabilities of the quantiles that are found of every column of numbers, and of those with an interval.
 const QUANTILES: [f64; 6] = [0.01, 0.05, 0.25, 0.5, 0.75, 0.95];
 const INTERVALS: [f64; 2] = [0.01, 0.95];

@@ -1,13 +1,13 @@
 //! What a reader should know before the results: only what is so.
 
-use gyradius_campaign::{SampleSummary, Surveys, Table, varies};
+use gyradius_campaign::{SampleSummary, Surveys, Table};
 use gyradius_report::{Section, Text, direction, most_frequent, significant};
 use gyradius_separation::MovingBody;
 use gyradius_statistics::Survey;
 use nalgebra::{Unit, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::{Fleet, folded::FoldedRoot, unmatched::UnmatchedLaw};
+use crate::{Fleet, folded::FoldedRoot, rounding::Rounding, unmatched::UnmatchedLaw};
 
 /// A kurtosis above which tails are heavy: intervals of standard deviations then cover less often than they say.
 pub(crate) const HEAVY: f64 = 10.0;
@@ -134,14 +134,16 @@ impl Alert {
         is_far.then_some(Self::FarFromNominal { quantity, nominal, mean })
     }
 
-    /// That outcomes, by their labels and of these scales, have heavy tails: they vary by more than rounding.
+    /// That outcomes, by their labels and of these scales, have heavy tails: they vary by more than this rounding.
     pub(crate) fn heavy_tails<'a>(
         model: &str,
         outcomes: impl IntoIterator<Item = (String, f64, &'a SampleSummary)>,
+        rounding: Rounding,
     ) -> Option<Self> {
         let heavy = |(label, scale, sample): (String, f64, &SampleSummary)| {
             let kurtosis = sample.kurtosis.filter(|kurtosis| *kurtosis > HEAVY)?;
-            varies(sample.minimum?, sample.maximum?, scale).then_some((label, kurtosis))
+            let varies = rounding.is_exceeded(sample.minimum?, sample.maximum?, scale);
+            varies.then_some((label, kurtosis))
         };
         let outcomes: Vec<(String, f64)> = outcomes.into_iter().filter_map(heavy).collect();
         let model = model.to_owned();

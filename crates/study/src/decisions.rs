@@ -158,7 +158,13 @@ pub(crate) fn judged<C: Subject>(
             Judged { model: model.to_owned(), judgement, unusual }
         }));
         let requirements = requirements_of(scenario, model);
-        let asked = Asked { requirements: &requirements, inputs: &inputs, main: &main, group };
+        let asked = Asked {
+            requirements: &requirements,
+            inputs: &inputs,
+            main: &main,
+            group,
+            rounding: C::ROUNDING,
+        };
         where_they_fail.extend(where_runs_fail::found(runs, asked)?);
     }
     let head = summary.head_mut();

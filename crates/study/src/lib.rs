@@ -55,6 +55,7 @@ mod report;
 mod results;
 mod robots;
 mod rollup;
+mod rounding;
 mod run;
 mod scenario;
 mod seen;

@@ -1,7 +1,7 @@
 //! Every number of a run, each declared in one place: its column, what it is called, its unit, where the report shows
 //! it, what it means and how it follows from a run.
 
-use gyradius_campaign::{Row, Table, varies};
+use gyradius_campaign::{Row, Table};
 use gyradius_report::with_unit;
 use gyradius_separation::{AnyLoad, LoadId, LoadKind, Separation};
 use gyradius_statistics::Survey;
@@ -9,6 +9,7 @@ use std::borrow::Cow;
 
 use crate::{
     body::{Body, Entry},
+    rounding::Rounding,
     run::Run,
 };
 
@@ -322,7 +323,9 @@ impl Quantity {
     /// Whether its values differ by more than rounding.
     pub(crate) fn varies(self, survey: &Survey) -> bool {
         let range = survey.minimum().zip(survey.maximum());
-        range.is_some_and(|((least, _), (most, _))| varies(least, most, self.scale()))
+        range.is_some_and(|((least, _), (most, _))| {
+            Rounding::OF_SEPARATIONS.is_exceeded(least, most, self.scale())
+        })
     }
 
     /// What it means, in a sentence.

@@ -16,6 +16,7 @@ use crate::{
     model::{Model, Separations},
     quantity::Quantity,
     report,
+    rounding::Rounding,
     seen::{Looking, Seen},
     subject::{Grouped, Subject},
     summary::ModelSummary,
@@ -39,6 +40,7 @@ impl Grouped for Separations<'_> {
 impl Subject for Scenario {
     /// Some tenths of a second of separations.
     const BLOCK_RUNS: u64 = 1 << 14;
+    const ROUNDING: Rounding = Rounding::OF_SEPARATIONS;
     const IMMATERIAL: &[&str] =
         &["runs", "vehicles", "rows", "columns", "requirements", "until", "drivers"];
 

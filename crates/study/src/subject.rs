@@ -15,6 +15,7 @@ use crate::{
     ScenarioError, StudyError,
     groups::{Drawing, Groups},
     head::Head,
+    rounding::Rounding,
     scenario::Framed,
     unusual::DrawnInput,
 };
@@ -23,6 +24,8 @@ use crate::{
 pub(crate) trait Subject: Framed + Sync {
     /// Runs of a block: what is lost, at most, on each thread that is interrupted.
     const BLOCK_RUNS: u64;
+    /// How much of the outcomes of runs is rounding.
+    const ROUNDING: Rounding;
     /// Keys of the resolved scenario, by their paths, that no run depends on.
     const IMMATERIAL: &[&str];
 

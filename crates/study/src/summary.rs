@@ -19,6 +19,7 @@ use crate::{
     model::Model,
     quantity::Quantity,
     regions::RegionSummary,
+    rounding::Rounding,
     run::Case,
     scenario::{Dispersed, Each, ModelLaw, Scenario, Target},
     seen::Seen,
@@ -423,7 +424,7 @@ impl ModelSummary {
         let backwards =
             Alert::backwards(name, seen.backwards, parted, scenario.outlines().is_some());
         let first = failed.into_iter().chain(backwards).chain(unmoved);
-        first.chain(Alert::heavy_tails(name, heavy)).chain(near).collect()
+        first.chain(Alert::heavy_tails(name, heavy, Rounding::OF_SEPARATIONS)).chain(near).collect()
     }
 
     /// What its runs draw, the entries of the inertias too.

@@ -7,6 +7,8 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
+use crate::rounding::Rounding;
+
 /// Inputs of a run that are told of, at most.
 const TOLD: usize = 3;
 /// Standard deviations from the mean of the runs from which on an input is unusual.
@@ -29,8 +31,8 @@ pub(crate) struct UnusualInput {
     pub(crate) score: f64,
 }
 
-/// A deviation that is a smaller share of the numbers, or of the other entries of an inertia, is rounding.
-const ROUNDING: f64 = 1e-12;
+/// A deviation that is a smaller share of the entries of an inertia is rounding, for they are computed of what is drawn.
+const ROUNDING_OF_ENTRIES: f64 = 1e-12;
 
 /// The inputs whose deviation is more than rounding, and those of which it is rounding alone: of an entry of an inertia,
 /// beside the largest of the six. `inertias` are the columns of each.
@@ -39,14 +41,14 @@ pub(crate) fn without_rounding(
     inertias: &[[String; 6]],
 ) -> (Vec<DrawnInput>, Vec<DrawnInput>) {
     let size = |input: &DrawnInput| input.mean.abs() + input.deviation;
-    let size_of_whole = |input: &DrawnInput| {
-        let entries = inertias.iter().find(|entries| entries.contains(&input.column));
-        let beside =
-            inputs.iter().filter(|other| entries.is_some_and(|e| e.contains(&other.column)));
-        beside.map(size).fold(size(input), f64::max)
+    let moves = |input: &DrawnInput| {
+        let Some(entries) = inertias.iter().find(|entries| entries.contains(&input.column)) else {
+            return Rounding::OF_LAST_PLACES.is_exceeded_by(input.deviation, size(input));
+        };
+        let beside = inputs.iter().filter(|other| entries.contains(&other.column));
+        input.deviation > ROUNDING_OF_ENTRIES * beside.map(size).fold(0.0, f64::max)
     };
-    let moves = inputs.iter().map(|input| input.deviation > ROUNDING * size_of_whole(input));
-    let moves: Vec<bool> = moves.collect();
+    let moves: Vec<bool> = inputs.iter().map(moves).collect();
     let (moving, rounding): (Vec<_>, Vec<_>) =
         inputs.into_iter().zip(moves).partition(|(_, moves)| *moves);
     let inputs = |of: Vec<(DrawnInput, bool)>| of.into_iter().map(|(input, _)| input).collect();
@@ -156,8 +158,8 @@ mod tests {
                 let size = |input: &DrawnInput| input.mean.abs() + input.deviation;
                 let largest = six.iter().map(size).fold(0.0, f64::max);
                 for input in six {
-                    let beside = if *is_body { largest } else { size(input) };
-                    prop_assert_eq!(moving.contains(input), input.deviation > 1e-12 * beside);
+                    let least = if *is_body { 1e-12 * largest } else { 16.0 * f64::EPSILON * size(input) };
+                    prop_assert_eq!(moving.contains(input), input.deviation > least);
                 }
             }
         }

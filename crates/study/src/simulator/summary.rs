@@ -25,6 +25,7 @@ use crate::{
     head::Head,
     regions::{self, RegionSummary},
     report,
+    rounding::Rounding,
     subject::{Grouped, Subject, Summarized, head_of},
     unusual::DrawnInput,
 };
@@ -92,7 +93,11 @@ impl SimulatorScenario {
         let near = self.bodies().iter().zip(near).filter_map(|(body, [near, drawn])| {
             Alert::near_boundary(name, &body.name, *near, *drawn)
         });
-        failed.chain(unmoved).chain(Alert::heavy_tails(name, heavy)).chain(near).collect()
+        failed
+            .chain(unmoved)
+            .chain(Alert::heavy_tails(name, heavy, Self::ROUNDING))
+            .chain(near)
+            .collect()
     }
 
     /// What of the draws of each model the regions of the bodies keep.
@@ -142,6 +147,7 @@ impl Grouped for ExternalSimulation<'_, SimulatorDraws<'_>> {
 impl Subject for SimulatorScenario {
     /// Few, for a run of a simulator may take seconds.
     const BLOCK_RUNS: u64 = 1 << 8;
+    const ROUNDING: Rounding = Rounding::OF_LAST_PLACES;
     /// Machines that do a campaign together may have the simulator in different places.
     const IMMATERIAL: &[&str] = &[
         "runs",

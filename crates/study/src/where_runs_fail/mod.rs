@@ -6,7 +6,7 @@ mod section;
 #[cfg(test)]
 mod tests;
 
-use gyradius_campaign::{Column, Measured, Requirement, Runs, RunsError, varies};
+use gyradius_campaign::{Column, Measured, Requirement, Runs, RunsError};
 use gyradius_statistics::{
     Confidence, PairSeparation, QuantileCells, RankCorrelation, Ranks, SuccessByDecile, holm,
     log_likelihood_ratio,
@@ -14,7 +14,7 @@ use gyradius_statistics::{
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::quantity::scale_of;
+use crate::{quantity::scale_of, rounding::Rounding};
 use rows::FirstRuns;
 
 pub(crate) use section::sections;
@@ -114,6 +114,8 @@ pub(crate) struct Asked<'a> {
     pub(crate) main: &'a [String],
     /// Runs that have something in common come in groups of so many, of which the first run is taken.
     pub(crate) group: u64,
+    /// Of the outcomes.
+    pub(crate) rounding: Rounding,
 }
 
 /// Looks at the runs of a model, in passes that hold some inputs of them each; nothing if there is nothing to tell.
@@ -124,7 +126,8 @@ pub(crate) fn found(runs: &Runs, asked: Asked<'_>) -> Result<Option<WhereRunsFai
     let judged: Vec<Counted> = fails.iter().map(|fails| Counted::new(fails)).collect();
     let outcomes = outcomes(asked);
     let numbers = rows.numbers(&outcomes)?;
-    let moves = |(outcome, numbers): &(Measured, Vec<f64>)| varying(runs, outcome, numbers);
+    let moves =
+        |(outcome, numbers): &(Measured, Vec<f64>)| varying(runs, outcome, numbers, asked.rounding);
     let (outcomes, of_outcomes): (Vec<_>, Vec<_>) =
         outcomes.into_iter().zip(numbers).filter(moves).unzip();
     let ranked: Vec<Ranked<'_>> = of_outcomes.par_iter().map(|y| Ranked::new(y)).collect();
@@ -181,13 +184,13 @@ pub(crate) fn found(runs: &Runs, asked: Asked<'_>) -> Result<Option<WhereRunsFai
 }
 
 /// Whether an outcome differs between runs by more than rounding.
-fn varying(runs: &Runs, outcome: &Measured, numbers: &[f64]) -> bool {
+fn varying(runs: &Runs, outcome: &Measured, numbers: &[f64], rounding: Rounding) -> bool {
     let of = |name: &String| runs.columns().iter().find(|column| column.name() == name);
     let units = outcome.columns().iter().map(|name| of(name).and_then(Column::unit));
     let scale = units.map(|unit| scale_of(unit.unwrap_or_default())).fold(0.0, f64::max);
     let finite = || numbers.iter().copied().filter(|x| x.is_finite());
     let range = finite().reduce(f64::min).zip(finite().reduce(f64::max));
-    range.is_some_and(|(least, most)| varies(least, most, scale))
+    range.is_some_and(|(least, most)| rounding.is_exceeded(least, most, scale))
 }
 
 /// The quantities of the requirements, each once, or the main outcomes without any.

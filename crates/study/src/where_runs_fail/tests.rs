@@ -35,7 +35,7 @@ fn at_most(limit: f64) -> Requirement {
 }
 
 fn asked<'a>(requirements: &'a [Requirement], inputs: &'a [String], group: u64) -> Asked<'a> {
-    Asked { requirements, inputs, main: &[], group }
+    Asked { requirements, inputs, main: &[], group, rounding: Rounding::OF_SEPARATIONS }
 }
 
 /// The share of values below each, with half of those that are equal.
