@@ -7,7 +7,9 @@ use gyradius_statistics::Survey;
 use nalgebra::{Unit, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::{Fleet, folded::FoldedRoot, rounding::Rounding, unmatched::UnmatchedLaw};
+use crate::{
+    Fleet, folded::FoldedRoot, naming::first_names, rounding::Rounding, unmatched::UnmatchedLaw,
+};
 
 /// A kurtosis above which tails are heavy: intervals of standard deviations then cover less often than they say.
 pub(crate) const HEAVY: f64 = 10.0;
@@ -248,13 +250,10 @@ fn heavy_tails(models: &[Heavy<'_>]) -> Text {
     let named = |outcomes: &[(String, f64)]| {
         let mut heaviest: Vec<&(String, f64)> = outcomes.iter().collect();
         heaviest.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let said = heaviest.iter().take(NAMED);
-        let said = said.map(|(label, kurtosis)| format!("{label} ({})", significant(*kurtosis, 3)));
-        let said: Vec<String> = said.collect();
-        match outcomes.len().saturating_sub(NAMED) {
-            0 => said.join(", "),
-            others => format!("{} and {others} more", said.join(", ")),
-        }
+        let said = heaviest
+            .iter()
+            .map(|(label, kurtosis)| format!("{label} ({})", significant(*kurtosis, 3)));
+        first_names(said, NAMED)
     };
     let text = match models {
         [(model, outcomes)] => {

@@ -285,9 +285,10 @@ pub(crate) fn sections(scenario: &impl Subject, head: &Head) -> Vec<Section> {
 }
 
 /// Where runs fail the requirements, and with which inputs outcomes rise and fall.
-pub(crate) fn where_runs_fail(head: &Head) -> Vec<Section> {
+pub(crate) fn where_runs_fail<C: Subject>(head: &Head) -> Vec<Section> {
     let vehicles = head.independent_runs_per_model.is_some();
-    where_runs_fail::sections(&head.where_runs_fail, vehicles, !head.requirements.is_empty())
+    let required = |model: &str| head.requirements.iter().any(|judged| judged.model == model);
+    where_runs_fail::sections(&head.where_runs_fail, vehicles, required, C::MAIN_OUTCOMES)
 }
 
 /// The figures that requirements may have, by name: known before the runs.

@@ -44,6 +44,7 @@ mod groups;
 mod head;
 mod loads;
 mod model;
+mod naming;
 mod options;
 mod quantity;
 mod rare;

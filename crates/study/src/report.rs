@@ -63,7 +63,7 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
         .section(results(scenario, summary))
         .section(parting(scenario, summary))
         .sections(drivers::section(&summary.head, &scenario.main_outcomes()))
-        .sections(decisions::where_runs_fail(&summary.head))
+        .sections(decisions::where_runs_fail::<Scenario>(&summary.head))
         .sections(faults(summary))
         .sections(scenario.source().map(|_| claims(summary)))
         .sections(ratios(summary))

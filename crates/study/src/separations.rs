@@ -41,6 +41,7 @@ impl Subject for Scenario {
     /// Some tenths of a second of separations.
     const BLOCK_RUNS: u64 = 1 << 14;
     const ROUNDING: Rounding = Rounding::OF_SEPARATIONS;
+    const MAIN_OUTCOMES: &str = "each outcome under “What the payload does”";
     const IMMATERIAL: &[&str] =
         &["runs", "vehicles", "rows", "columns", "requirements", "until", "drivers"];
 

@@ -26,6 +26,8 @@ pub(crate) trait Subject: Framed + Sync {
     const BLOCK_RUNS: u64;
     /// How much of the outcomes of runs is rounding.
     const ROUNDING: Rounding;
+    /// What each of the [main outcomes](Self::main_outcomes) is called on a page.
+    const MAIN_OUTCOMES: &str;
     /// Keys of the resolved scenario, by their paths, that no run depends on.
     const IMMATERIAL: &[&str];
 

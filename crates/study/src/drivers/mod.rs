@@ -18,6 +18,7 @@ use crate::{
     subject::{Grouped, Subject, Summarized},
 };
 
+use section::fails;
 pub(crate) use section::{figure_names, section, told};
 
 /// Where their runs are until they are counted.
@@ -90,11 +91,11 @@ impl<C: Subject> Finding<'_, '_, C> {
             done += plan.runs;
             let columns = simulation[0].1.columns();
             let asked = requirements_of(self.scenario, model);
-            let fails = asked.iter().map(|r| Output::Fails(Box::new(r.clone())));
+            let failing = asked.iter().map(|r| Output::Fails(Box::new(r.clone())));
             let outcomes: Vec<&Column> =
                 columns.iter().filter(|c| self.scenario.is_outcome(c)).collect();
             let numbers = outcomes.iter().map(|column| Output::Column(column.name().to_owned()));
-            let outputs: Vec<Output> = fails.chain(numbers).collect();
+            let outputs: Vec<Output> = failing.chain(numbers).collect();
             let runs = &runs[0];
             let confidence = Confidence::default();
             let indices =
@@ -103,16 +104,22 @@ impl<C: Subject> Finding<'_, '_, C> {
             let names = names.chain(outcomes.iter().map(|column| {
                 (column.name().to_owned(), Some(column.unit().unwrap_or_default().to_owned()))
             }));
-            let driven = names.zip(indices).filter_map(|((output, unit), indices)| {
-                Some(Driven { output, unit, indices: indices? })
-            });
+            let (mut driven, mut left_out) = (Vec::new(), Vec::new());
+            for ((output, unit), indices) in names.zip(indices) {
+                match indices {
+                    Some(indices) => driven.push(Driven { output, unit, indices }),
+                    None if unit.is_none() => left_out.push(fails(&output)),
+                    None => left_out.push(output),
+                }
+            }
             all.push(Drivers {
                 model: model.to_owned(),
                 base_runs: base,
                 runs: plan.runs,
                 failed: blocks.failed(model),
                 groups,
-                outputs: driven.collect(),
+                outputs: driven,
+                left_out,
                 identity: identity.clone(),
             });
         }

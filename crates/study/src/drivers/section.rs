@@ -9,13 +9,14 @@ use gyradius_statistics::{Estimate, SobolIndex};
 use crate::{
     driven::{Driven, Drivers},
     head::Head,
+    naming::first_names,
 };
 
 /// Outputs in a figure, at most.
 const DRAWN: usize = 6;
 /// Groups that are told of an output in the table.
 const TOLD: usize = 3;
-/// Outputs that are named of those that are nearly always the same.
+/// Outputs that are named of those that are nearly always the same, and of those that are left out.
 const NAMED: usize = 8;
 const FIGURE: &str = "drivers";
 
@@ -31,7 +32,7 @@ pub(crate) fn figure_names<'a>(
 pub(crate) fn section(head: &Head, main: &[String]) -> Option<Section> {
     let base = head.drivers.first()?.base_runs;
     let reading = format!(
-        "The inputs that are drawn independently of each other are groups. Of each output the figure shows which share of its \
+        "The inputs that are drawn independently of each other are groups. Of each of its outputs a figure shows which share of the \
          variance a group explains alone (the first-order Sobol’ index), and which share would be left if all other groups were \
          known (the total index): what a group has in all beyond what it has alone are its interactions. A total index near 0 \
          means that the group may as well be fixed. Found from {base} base runs, each done with two draws of all groups, and once \
@@ -40,6 +41,13 @@ pub(crate) fn section(head: &Head, main: &[String]) -> Option<Section> {
          and the table has it as it is. Of a requirement the output is whether a run fails it."
     );
     let mut section = Section::new("What drives the outcome").paragraph(reading);
+    let fewer = |drivers: &Drivers| shown(head, drivers, main).count() < drivers.outputs.len();
+    if head.drivers.iter().any(fewer) {
+        section = section.paragraph(format!(
+            "A figure has {DRAWN} outputs at most: of a model with requirements whether a run fails them, and what they are about, and \
+             of another one the first outcomes. The tables have all outputs that vary."
+        ));
+    }
     for drivers in &head.drivers {
         if drivers.failed > 0 {
             let (failed, runs, model) = (drivers.failed, drivers.runs, &drivers.model);
@@ -71,18 +79,13 @@ pub(crate) fn told(total: &Estimate) -> String {
 /// Of which outputs of a model the indices are not known, because few runs carry them.
 fn of_few(drivers: &Drivers) -> Option<Text> {
     let few: Vec<&Driven> = drivers.outputs.iter().filter(|d| d.indices.is_of_few()).collect();
-    let named = few.iter().take(NAMED);
-    let named =
-        named.map(|driven| format!("{} ({:.0})", driven.label(), driven.indices.effective_runs()));
-    let named: Vec<String> = named.collect();
-    let others = match few.len().saturating_sub(NAMED) {
-        0 => String::new(),
-        others => format!(" and {others} more"),
-    };
+    let named = few
+        .iter()
+        .map(|driven| format!("{} ({:.0})", driven.label(), driven.indices.effective_runs()));
+    let named = first_names(named, NAMED);
     let (all, model) = (2 * drivers.base_runs, &drivers.model);
     let text = Text::default().strong(format!("{model}: too few runs count")).plain(format!(
-        " in {}{others}: few runs lie far from the others, or bring out what two groups do together. In brackets is by how many of the {all} runs with a single draw of everything the variance is known. The indices may lie far beyond 0 and 1, and their intervals miss the truth far more often than they say. Take more base runs.",
-        named.join(", ")
+        " in {named}: few runs lie far from the others, or bring out what two groups do together. In brackets is by how many of the {all} runs with a single draw of everything the variance is known. The indices may lie far beyond 0 and 1, and their intervals miss the truth far more often than they say. Take more base runs.",
     ));
     (!few.is_empty()).then_some(text)
 }
@@ -123,11 +126,24 @@ fn all(drivers: &Drivers) -> Option<Section> {
         });
     }
     let heading = format!("All outputs: {}", drivers.model);
-    Some(
-        Section::folded(heading)
-            .paragraph("Groups by their total index, with its interval.")
-            .table(table),
-    )
+    let section =
+        Section::folded(heading).paragraph("Groups by their total index, with its interval.");
+    Some(left_out(drivers).into_iter().fold(section, Section::paragraph).table(table))
+}
+
+/// Which outputs of a model nothing drives.
+fn left_out(drivers: &Drivers) -> Option<String> {
+    let names = &drivers.left_out;
+    let text = format!(
+        "Left out are outputs that are the same in all of these runs, or missing: {}.",
+        first_names(names.iter().cloned(), NAMED)
+    );
+    (!names.is_empty()).then_some(text)
+}
+
+/// The output that is whether a run fails a requirement of this name.
+pub(super) fn fails(requirement: &str) -> String {
+    format!("fails: {requirement}")
 }
 
 impl Driven {
@@ -135,7 +151,7 @@ impl Driven {
     fn label(&self) -> String {
         match &self.unit {
             Some(unit) => with_unit(&self.output, unit),
-            None => format!("fails: {}", self.output),
+            None => fails(&self.output),
         }
     }
 

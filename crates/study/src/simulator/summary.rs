@@ -30,9 +30,6 @@ use crate::{
     unusual::DrawnInput,
 };
 
-/// Outputs that are told of first.
-const MAIN: usize = 4;
-
 /// Every number that the report of a campaign of a simulator shows, and of what it is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SimulatorSummary {
@@ -148,6 +145,7 @@ impl Subject for SimulatorScenario {
     /// Few, for a run of a simulator may take seconds.
     const BLOCK_RUNS: u64 = 1 << 8;
     const ROUNDING: Rounding = Rounding::OF_LAST_PLACES;
+    const MAIN_OUTCOMES: &str = "each output";
     /// Machines that do a campaign together may have the simulator in different places.
     const IMMATERIAL: &[&str] = &[
         "runs",
@@ -244,7 +242,7 @@ impl Subject for SimulatorScenario {
     }
 
     fn main_outcomes(&self) -> Vec<String> {
-        self.outputs().iter().map(|column| column.name().to_owned()).take(MAIN).collect()
+        self.outputs().iter().map(|column| column.name().to_owned()).collect()
     }
 
     fn unit(&self, column: &str) -> Option<String> {
@@ -318,7 +316,7 @@ impl Subject for SimulatorScenario {
         let first = first.chain(decisions::sections(self, &summary.head));
         let driven = drivers::section(&summary.head, &self.main_outcomes());
         let document = summary.overview.document_led_by(first).sections(driven);
-        let document = document.sections(decisions::where_runs_fail(&summary.head));
+        let document = document.sections(decisions::where_runs_fail::<Self>(&summary.head));
         let kept = summary.regions.iter().map(|kept| (&*kept.model, &*kept.regions));
         let document = document.sections(regions::section(kept));
         let document = report::noting_vehicles(document, &summary.head);

@@ -27,6 +27,8 @@ const RANKED: usize = 10_000;
 const LEAST: u64 = 10;
 /// Inputs that are held in memory at once, and of which all pairs are tested.
 const INPUTS: usize = 40;
+/// Outcomes whose ranks are correlated without requirements, at most: the first ones.
+const OUTCOMES: usize = 40;
 /// Pairs that are kept.
 const PAIRS: usize = 20;
 /// Parts of each input of a pair.
@@ -42,6 +44,9 @@ pub(crate) struct WhereRunsFail {
     requirements: Vec<Failures>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     rank_correlations: Vec<Outcome>,
+    /// Outcomes whose ranks are not correlated, for there are too many.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    outcomes_left_out: Vec<String>,
 }
 
 /// Where runs fail a requirement.
@@ -124,7 +129,7 @@ pub(crate) fn found(runs: &Runs, asked: Asked<'_>) -> Result<Option<WhereRunsFai
     let rows = FirstRuns::new(runs, asked.group, most);
     let (there, fails) = rows.failing(asked.requirements)?;
     let judged: Vec<Counted> = fails.iter().map(|fails| Counted::new(fails)).collect();
-    let outcomes = outcomes(asked);
+    let (outcomes, outcomes_left_out) = outcomes(asked);
     let numbers = rows.numbers(&outcomes)?;
     let moves =
         |(outcome, numbers): &(Measured, Vec<f64>)| varying(runs, outcome, numbers, asked.rounding);
@@ -179,7 +184,8 @@ pub(crate) fn found(runs: &Runs, asked: Asked<'_>) -> Result<Option<WhereRunsFai
     let rank_correlations: Vec<Outcome> = told.collect();
     let nothing = requirements.is_empty() && rank_correlations.is_empty();
     let model = runs.model().to_owned();
-    let found = WhereRunsFail { model, runs: there, requirements, rank_correlations };
+    let found =
+        WhereRunsFail { model, runs: there, requirements, rank_correlations, outcomes_left_out };
     Ok((!nothing).then_some(found))
 }
 
@@ -193,18 +199,19 @@ fn varying(runs: &Runs, outcome: &Measured, numbers: &[f64], rounding: Rounding)
     range.is_some_and(|(least, most)| rounding.is_exceeded(least, most, scale))
 }
 
-/// The quantities of the requirements, each once, or the main outcomes without any.
-fn outcomes(asked: Asked<'_>) -> Vec<Measured> {
+/// The quantities of the requirements, each once, or the main outcomes without any, and those of them that are left out.
+fn outcomes(asked: Asked<'_>) -> (Vec<Measured>, Vec<String>) {
     let mut outcomes: Vec<Measured> = Vec::new();
     for requirement in asked.requirements {
         if !outcomes.contains(requirement.quantity()) {
             outcomes.push(requirement.quantity().clone());
         }
     }
-    if outcomes.is_empty() {
-        outcomes.extend(asked.main.iter().map(|column| Measured::column(column)));
+    if !outcomes.is_empty() {
+        return (outcomes, Vec::new());
     }
-    outcomes
+    let (told, left_out) = asked.main.split_at(asked.main.len().min(OUTCOMES));
+    (told.iter().map(|column| Measured::column(column)).collect(), left_out.to_vec())
 }
 
 /// The inputs of which pairs are tested, in the order of the run table: those that separate best alone, if there are many.

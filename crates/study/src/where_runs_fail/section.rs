@@ -4,7 +4,8 @@ use gyradius_campaign::share_in_percent;
 use gyradius_report::{PageCell, PageTable, Section, Text, interval, resolved, significant};
 use gyradius_statistics::{Confidence, Estimate, Tenth};
 
-use super::{Correlation, Failures, LEAST, Pair, RANKED, RUNS, Tenths, WhereRunsFail};
+use super::{Correlation, Failures, LEAST, OUTCOMES, Pair, RANKED, RUNS, Tenths, WhereRunsFail};
+use crate::naming::first_names;
 
 /// Adjusted p-values below this are shown.
 const SHOWN_BELOW: f64 = 0.01;
@@ -12,11 +13,20 @@ const SHOWN_BELOW: f64 = 0.01;
 const INPUTS: usize = 6;
 const PAIRS: usize = 5;
 const CORRELATIONS: usize = 10;
+/// Outcomes that are named of those that are left out.
+const NAMED: usize = 8;
 const FIFTHS: [&str; 5] = ["lowest", "second", "middle", "fourth", "highest"];
 
-/// Where runs fail, if a requirement has failures enough; and with which inputs outcomes rise and fall.
-pub(crate) fn sections(found: &[WhereRunsFail], vehicles: bool, required: bool) -> Vec<Section> {
-    separating(found, vehicles).into_iter().chain(correlations(found, vehicles, required)).collect()
+/// Where runs fail, if a requirement has failures enough; and with which inputs outcomes rise and fall: those that the requirements of a
+/// model are about, or, of a model without any, those that are called so.
+pub(crate) fn sections(
+    found: &[WhereRunsFail],
+    vehicles: bool,
+    required: impl Fn(&str) -> bool,
+    main: &str,
+) -> Vec<Section> {
+    let correlations = correlations(found, vehicles, required, main);
+    separating(found, vehicles).into_iter().chain(correlations).collect()
 }
 
 /// A requirement with the model whose runs fail it.
@@ -173,7 +183,12 @@ fn p(p: f64) -> String {
 }
 
 /// With which inputs outcomes rise and fall.
-fn correlations(found: &[WhereRunsFail], vehicles: bool, required: bool) -> Option<Section> {
+fn correlations(
+    found: &[WhereRunsFail],
+    vehicles: bool,
+    required: impl Fn(&str) -> bool,
+    main: &str,
+) -> Option<Section> {
     let mut rows: Vec<(String, &str, Estimate)> = Vec::new();
     for of in found {
         for outcome in &of.rank_correlations {
@@ -183,10 +198,13 @@ fn correlations(found: &[WhereRunsFail], vehicles: bool, required: bool) -> Opti
         }
     }
     // With requirements, what these are about is all that is asked.
-    let outcomes = if required {
-        "each quantity that the requirements of the model are about"
-    } else {
-        "each outcome"
+    let models = || found.iter().filter(|of| !of.rank_correlations.is_empty());
+    let are = |asked: bool| models().any(|of| required(&of.model) == asked);
+    let of_requirements = "each quantity that the requirements of the model are about";
+    let outcomes = match [are(true), are(false)] {
+        [true, false] => of_requirements.to_owned(),
+        [true, true] => format!("{of_requirements}, and for a model without requirements {main},"),
+        [false, _] => main.to_owned(),
     };
     let reading = format!(
         "The rank correlation (Spearman) of an input and an outcome is 1 if the outcome always rises with the input, −1 if it always falls, \
@@ -205,7 +223,15 @@ fn correlations(found: &[WhereRunsFail], vehicles: bool, required: bool) -> Opti
         })
         .numbers("interval", |(.., estimate)| interval(Some(estimate.interval()), 2));
     let section = Section::folded("Rank correlations of inputs and outcomes");
-    (!rows.is_empty()).then(|| section.paragraph(reading).table(table))
+    // The same of all models without requirements.
+    let left_out = models().map(|of| &of.outcomes_left_out).find(|names| !names.is_empty());
+    let left_out = left_out.map(|names| {
+        let names = first_names(names.iter().cloned(), NAMED);
+        format!("Left out are the outcomes after the first {OUTCOMES}: {names}.")
+    });
+    let section = section.paragraph(reading);
+    let section = left_out.into_iter().fold(section, Section::paragraph);
+    (!rows.is_empty()).then(|| section.table(table))
 }
 
 /// The correlations whose interval leaves out 0, the strongest first.

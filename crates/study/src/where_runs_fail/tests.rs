@@ -217,7 +217,9 @@ fn shown_pairs(found: &WhereRunsFail) -> Vec<[&str; 2]> {
 }
 
 fn page(found: &[WhereRunsFail]) -> String {
-    Document::new("t", "h", "l").sections(sections(found, false, true)).markdown()
+    Document::new("t", "h", "l")
+        .sections(sections(found, false, |_| true, "each outcome"))
+        .markdown()
 }
 
 #[test]
@@ -320,6 +322,49 @@ fn nothing_is_told_without_requirements_or_failures() {
         assert_eq!(told.requirements, []);
     }
     assert_eq!(page(&[]), Document::new("t", "h", "l").markdown());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(16))]
+
+    /// Of any number of outcomes each is correlated or named, and the page says of which outcomes it speaks: of each model that has
+    /// requirements or none.
+    #[test]
+    fn every_outcome_is_told_of_or_named(outcomes in 1..60_usize, seed in any::<u64>(), required in any::<[bool; 2]>()) {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let names: Vec<String> = (0..outcomes).map(|i| format!("y{i}")).collect();
+        let columns = names.iter().cloned().chain(["x".to_owned()]);
+        let columns = columns.map(|name| Column::number(name, "1", "A number."));
+        let mut table = Table::new("model", 0, columns.collect()).unwrap();
+        for _ in 0..60 {
+            let x: f64 = rng.random_range(-1.0..1.0);
+            table.push(None, (0..=outcomes).map(|_| Cell::from(x))).unwrap();
+        }
+        let runs = Runs::from(table);
+        let inputs = ["x".to_owned()];
+        let of_y0 = [Requirement::new("first", Measured::column("y0"), Bound::AtMost(0.0), 0.9, 0.9).unwrap()];
+        let told: Vec<WhereRunsFail> = (0..2).zip(required).map(|(model, required)| {
+            let requirements = if required { &of_y0[..] } else { &[] };
+            let found = found(&runs, Asked { main: &names, ..asked(requirements, &inputs, 1) }).unwrap().unwrap();
+            WhereRunsFail { model: format!("model {model}"), ..found }
+        }).collect();
+        for (own, required) in told.iter().zip(required) {
+            let all: Vec<&String> =
+                own.rank_correlations.iter().map(|of| &of.outcome).chain(&own.outcomes_left_out).collect();
+            let expected = if required { &names[..1] } else { &names[..] };
+            prop_assert_eq!(all, expected.iter().collect::<Vec<_>>());
+            prop_assert!(own.rank_correlations.len() <= 40);
+        }
+        let has = |model: &str| required[usize::from(model == "model 1")];
+        let page = Document::new("t", "h", "l").sections(sections(&told, false, has, "each outcome")).markdown();
+        let speaks = [page.contains("each quantity that the requirements"), page.contains("each outcome")];
+        prop_assert_eq!(speaks, [required.contains(&true), required.contains(&false)], "{}", page);
+        let is_named = outcomes > 40 && required.contains(&false);
+        prop_assert_eq!(page.contains("Left out are the outcomes after the first 40: y40"), is_named);
+        for name in names.iter().take(40).filter(|_| required.contains(&false)) {
+            prop_assert!(page.contains(&format!("{name}, model")), "{} {}", name, page);
+        }
+    }
 }
 
 /// An outcome that is constant but for rounding goes with no input, however well the rounding does.

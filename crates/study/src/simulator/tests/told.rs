@@ -192,6 +192,45 @@ fn drivers_of_what_seldom_happens_are_warned_of() {
     assert!(!figure.contains("up to 0.5, too few") && !figure.contains("y, too few"), "{figure}");
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    /// Of any outputs, some of which are constant: the first six that vary are in the figure of drivers, all that vary in the table and
+    /// among the rank correlations, and those that do not are named.
+    #[test]
+    fn every_output_is_driven_or_named(constant in prop::collection::vec(any::<bool>(), 1..10)) {
+        let folder = folder();
+        let names: Vec<String> = (0..constant.len()).map(|i| format!("out{i}")).collect();
+        let more: Vec<String> = names.iter().map(|name| format!("[[simulation.outputs]]\nname = \"{name}\"\n")).collect();
+        let text = SCENARIO.replace("[[simulation.outputs]]\nname = \"y\"\n", &more.concat());
+        let all: Vec<(String, bool)> = names.into_iter().zip(constant).collect();
+        let own = all.clone();
+        let function = SimulatorFunction::new(move |run: &RunInputs<'_>| {
+            let x = run.input("x").ok_or("no x")?;
+            Ok(own.iter().map(|(name, constant)| (name.clone(), if *constant { 1.0 } else { x })).collect())
+        });
+        let scenario = SimulatorScenario::from_toml(&format!("runs = 60\ndrivers = 100\n{text}"), folder.path()).unwrap();
+        let out = folder.path().join("out");
+        let study = scenario.with_function(function).unwrap();
+        let study = study.study(&Options::to(out.clone()), &|_| {}, &|_| {}).unwrap();
+        let drivers = &study.summary().head.drivers[0];
+        let of = |constant: bool| all.iter().filter(move |own| own.1 == constant).map(|(name, _)| name.as_str()).collect::<Vec<_>>();
+        prop_assert_eq!(drivers.outputs.iter().map(|driven| driven.output.as_str()).collect::<Vec<_>>(), of(false));
+        prop_assert_eq!(&drivers.left_out, &of(true));
+        let page = fs::read_to_string(out.join("report.md")).unwrap();
+        if !of(false).is_empty() {
+            let figure = fs::read_to_string(out.join("figures/drivers-all.svg")).unwrap();
+            for (place, name) in of(false).into_iter().enumerate() {
+                prop_assert_eq!(figure.contains(name), place < 6, "{}", name);
+                prop_assert!(page.contains(&format!("{name}, all")), "{} {}", name, page);
+            }
+            let named = format!("the same in all of these runs, or missing: {}", of(true).join(", "));
+            prop_assert_eq!(page.contains(&named), !of(true).is_empty(), "{}", page);
+            prop_assert_eq!(page.contains("A figure has 6 outputs at most"), of(false).len() > 6);
+        }
+    }
+}
+
 /// Numbers of any size are written in a few digits, on every page and figure and on the terminal.
 #[test]
 fn no_number_has_hundreds_of_digits() {
