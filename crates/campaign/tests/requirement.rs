@@ -202,7 +202,9 @@ proptest! {
             .collect();
         let failed = if left_out { FailedRuns::LeftOut } else { FailedRuns::Against };
         let requirement = Requirement::new("it", Measured::column("x"), bound, 0.9, 0.8).unwrap();
+        let looks = [1, n / 3 + 1, n / 2 + 2, n + 7];
         let judging = Judging::new([requirement.with_failed_runs(failed)], n as u64, group as u64);
+        let judging = judging.looked_after(&looks.map(|look| look as u64));
         let column = || vec![Column::number("x", "1", "A number.")];
         let mut whole = Table::new("model", 0, column()).unwrap();
         let size = n.div_ceil(block);
@@ -217,6 +219,8 @@ proptest! {
         let judged = judging.finish(&Runs::from(whole)).unwrap();
         let of_first: Vec<Option<f64>> = numbers.iter().copied().step_by(group).collect();
         told_of_all(&judged[0], &of_first, left_out);
+        let at = |look: usize| of_first.iter().take(look.div_ceil(group)).filter(|x| x.is_some() || !left_out).count();
+        prop_assert_eq!(judged[0].counted_at_looks(), looks.map(|look| at(look) as u64));
     }
 
     /// A requirement that is printed is read as the same; so is one in JSON.

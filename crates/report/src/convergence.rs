@@ -2,6 +2,7 @@
 
 use gyradius_campaign::{ConvergencePoint, Judgement, Looks, Requirement, stated_in_percent};
 use gyradius_statistics::Interval;
+use std::collections::BTreeSet;
 
 use crate::Drawing;
 use crate::axis::{Spacing, Tick, Units, decades, ticks};
@@ -12,19 +13,18 @@ use crate::svg::px;
 use crate::text::significant;
 
 /// The share of runs that fail a requirement among the first so many, under models. Nothing is computed here but places: the numbers
-/// are those of the judgements. Where a rule looked at the runs while they were done stand marks along the bottom.
+/// are those of the judgements. Where a rule looked at the runs while they were done stand marks along the bottom, at how many counted then.
 #[must_use]
 pub fn convergence_figure(
     name: &str,
     caption: &str,
     requirement: &Requirement,
     models: &[(&str, &Judgement)],
-    looks: &[u64],
 ) -> Drawing {
-    Drawing::new(name, caption, svg(requirement, models, looks))
+    Drawing::new(name, caption, svg(requirement, models))
 }
 
-fn svg(requirement: &Requirement, models: &[(&str, &Judgement)], looks: &[u64]) -> String {
+fn svg(requirement: &Requirement, models: &[(&str, &Judgement)]) -> String {
     let title = format!("Convergence: {}", requirement.name());
     let allowed = 1.0 - requirement.probability();
     let estimates = || models.iter().flat_map(|(_, judgement)| judgement.convergence());
@@ -97,6 +97,9 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)], looks: &[u64]) 
         field.plot.path(&line_pen(i), &d);
         field.plot.path(&mark_pen(i), &marks);
     }
+    // Where models leave out different runs, each has its own.
+    let looks = models.iter().flat_map(|(_, judgement)| judgement.counted_at_looks());
+    let looks: BTreeSet<u64> = looks.copied().collect();
     if !looks.is_empty() {
         let ticks = looks.iter().map(|runs| place((*runs as f64).log10()));
         // Where the looks before the first estimate would stand is no place.
@@ -126,7 +129,7 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)], looks: &[u64]) 
 
 /// From where to where an axis is on which these are, the logarithms of numbers of runs: half a decade at least, which always
 /// holds a tick, with room to each side.
-fn range(logs: impl Iterator<Item = f64>) -> (f64, f64) {
+pub(crate) fn range(logs: impl Iterator<Item = f64>) -> (f64, f64) {
     let (first, end) =
         logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), x| (l.min(x), u.max(x)));
     if first > end {

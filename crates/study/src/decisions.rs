@@ -1,14 +1,13 @@
 //! Requirements of a scenario: checked, judged by the runs, and told first in the report.
 
+mod figures;
+
 use gyradius_campaign::{
     Bound, Column, Counting, FailedRuns, Judgement, Judging, Looks, Measured, Requirement,
     RunBeyond, Runs, Table, one_decimal, percent_beside, percent_or_less, percent_or_more, plain,
     rounded_down, stated_in_percent,
 };
-use gyradius_report::{
-    Drawing, PageCell, PageTable, Section, Text, Tone, convergence_figure, distribution_figure,
-    significant,
-};
+use gyradius_report::{PageCell, PageTable, Section, Text, Tone, significant};
 use gyradius_statistics::Verdict;
 
 use crate::{
@@ -20,9 +19,7 @@ use crate::{
     where_runs_fail::{self, Asked},
 };
 
-/// Figures of a requirement, whose number follows.
-const DISTRIBUTION: &str = "distribution";
-const CONVERGENCE: &str = "convergence";
+pub(crate) use figures::figure_names;
 
 /// Requirements of a scenario, at most.
 const MOST: usize = 100;
@@ -111,11 +108,17 @@ pub(crate) fn requirements_of<C: Subject>(scenario: &C, model: &str) -> Vec<Requ
     all.filter(|own| own.is_of(model)).cloned().collect()
 }
 
-/// What looks at the requirements of each model.
-pub(crate) fn judging<C: Subject>(scenario: &C, counting: Counting) -> Vec<Judging> {
+/// What looks at the requirements of each model, whose runs a rule may have looked at.
+pub(crate) fn judging<C: Subject>(
+    scenario: &C,
+    counting: Counting,
+    ended: Option<&Ended>,
+) -> Vec<Judging> {
+    let looks = ended.map(Ended::looks).unwrap_or_default();
     let of_model = |name: &str| {
         let requirements = requirements_of(scenario, name);
-        Judging::new(requirements, scenario.runs(), counting.group()).looked_at(counting.looks())
+        let judging = Judging::new(requirements, scenario.runs(), counting.group());
+        judging.looked_at(counting.looks()).looked_after(&looks)
     };
     scenario.model_names().map(of_model).collect()
 }
@@ -279,8 +282,11 @@ pub(crate) fn sections(scenario: &impl Subject, head: &Head) -> Vec<Section> {
     }
     let section = Section::new("Requirements").table(table);
     let section = notes.into_iter().fold(section, Section::paragraph);
-    let folded =
-        [Some(distributions(scenario, head)), worst(scenario, head), Some(convergence(head))];
+    let folded = [
+        Some(figures::distributions(scenario, head)),
+        worst(scenario, head),
+        Some(figures::convergence(head)),
+    ];
     vec![section.sections(folded.into_iter().flatten())]
 }
 
@@ -289,90 +295,6 @@ pub(crate) fn where_runs_fail<C: Subject>(head: &Head) -> Vec<Section> {
     let vehicles = head.independent_runs_per_model.is_some();
     let required = |model: &str| head.requirements.iter().any(|judged| judged.model == model);
     where_runs_fail::sections(&head.where_runs_fail, vehicles, required, C::MAIN_OUTCOMES)
-}
-
-/// The figures that requirements may have, by name: known before the runs.
-pub(crate) fn figure_names(requirements: &[Requirement]) -> impl Iterator<Item = String> {
-    (1..=requirements.len())
-        .flat_map(|number| [DISTRIBUTION, CONVERGENCE].map(|of| of_requirement(of, number)))
-}
-
-fn of_requirement(figure: &str, number: usize) -> String {
-    format!("{figure}-{number}")
-}
-
-/// A figure of each requirement, numbered from 1, of what the runs of each model say.
-fn figures(
-    head: &Head,
-    draw: impl Fn(usize, &Requirement, &[(&str, &Judgement)]) -> Drawing,
-) -> Vec<Drawing> {
-    let mut of: Vec<(&Requirement, Vec<(&str, &Judgement)>)> = Vec::new();
-    for Judged { model, judgement, .. } in &head.requirements {
-        let requirement = judgement.requirement();
-        match of.iter_mut().find(|(known, _)| *known == requirement) {
-            Some((_, models)) => models.push((model, judgement)),
-            None => of.push((requirement, vec![(model, judgement)])),
-        }
-    }
-    let numbered = of.iter().zip(1..);
-    numbered.map(|((requirement, models), number)| draw(number, requirement, models)).collect()
-}
-
-/// How often the runs were looked at; the same for all requirements of a study.
-fn looks(head: &Head) -> Looks {
-    head.requirements.first().map(|judged| judged.judgement.looks()).unwrap_or_default()
-}
-
-/// What the quantities of the requirements look like, to the extreme runs.
-fn distributions(scenario: &impl Subject, head: &Head) -> Section {
-    let reading = "Each line goes through order statistics of the runs: the value with the rank k of n runs is drawn at the share \
-                   (k − ½)/n, on the axis of a normal law, on which a normal distribution is a straight line. The extreme runs of \
-                   both tails are always among the points. The shaded band holds the whole distribution of all runs at once, with \
-                   the confidence of the requirement and whatever the distribution: at each of the K points stand Clopper and \
-                   Pearson’s bounds with the confidence 1 − (1 − c)/K, and between the points the band follows from the fact that \
-                   a distribution function never decreases. The tolerance point is the bound of the table above. A point is a run \
-                   as it is: tails are not fitted.";
-    let drawings = figures(head, |number, requirement, models| {
-        let (quantity, name) = (requirement.quantity(), requirement.name());
-        let caption =
-            format!("“{name}”: distribution of {quantity}, to the extreme runs of both tails");
-        let unit = unit_of(scenario, quantity);
-        let file = of_requirement(DISTRIBUTION, number);
-        distribution_figure(&file, &caption, requirement, unit.as_deref(), models)
-    });
-    let section = Section::new("Distributions").paragraph(reading);
-    let section = match looks(head) {
-        Looks::Once => section,
-        Looks::Often => section.paragraph(
-            "The runs were looked at while they were done, and what was seen decided when they ended. The band takes no account of \
-             that: it is the band of one look at as many runs, and covers less often than it says. The tolerance point does take \
-             account of it.",
-        ),
-    };
-    section.figures(drawings)
-}
-
-/// How the shares that fail come to rest.
-fn convergence(head: &Head) -> Section {
-    let share = "The share of the runs that fail each requirement among the first so many runs, in the order of their numbers. ";
-    let intervals = match looks(head) {
-        Looks::Once => {
-            "Each interval is what these runs would tell if nobody had looked before (Clopper and Pearson, with the confidence of the \
-             requirement): whoever looks often, and stops when it pleases, takes a greater risk."
-        }
-        Looks::Often => {
-            "The intervals are those of a confidence sequence: with the confidence of the requirement all of them hold together, \
-             however often one looks and whenever one stops. They are wider than Clopper and Pearson’s of one look."
-        }
-    };
-    let reading = format!("{share}{intervals}");
-    let looks: Vec<u64> = head.ended.as_ref().map(Ended::looks).unwrap_or_default();
-    let drawings = figures(head, |number, requirement, models| {
-        let caption = format!("Runs that fail “{}” among the first so many", requirement.name());
-        let name = of_requirement(CONVERGENCE, number);
-        convergence_figure(&name, &caption, requirement, models, &looks)
-    });
-    Section::folded("Convergence").paragraph(reading).figures(drawings)
 }
 
 /// The worst runs, each with the command, or the call, that does it again.

@@ -146,7 +146,7 @@ pub(crate) fn do_what_is_left<C: Subject>(
     }
     let done = threads.install(|| {
         let looks = looks(scenario, &simulations)?;
-        let judging = decisions::judging(scenario, counting);
+        let judging = decisions::judging(scenario, counting, ended.as_ref());
         let look = |place: usize, block: &Table| {
             looks[place].look(block);
             judging[place].look(block);

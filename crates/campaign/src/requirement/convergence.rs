@@ -77,6 +77,42 @@ impl Prefixes {
     }
 }
 
+/// How many runs count among the first so many, of some numbers of runs.
+#[derive(Clone, Debug, Default)]
+pub(super) struct CountedAmong {
+    /// Those between one number of runs and the next.
+    counts: Vec<u64>,
+}
+
+impl CountedAmong {
+    /// Adds a run, from 0, that counts; the numbers of runs rise.
+    pub(super) fn add(&mut self, run: u64, numbers: &[u64]) {
+        let place = numbers.partition_point(|number| *number <= run);
+        self.reach(place + 1);
+        self.counts[place] += 1;
+    }
+
+    pub(super) fn merge(&mut self, other: &Self) {
+        self.reach(other.counts.len());
+        self.counts.iter_mut().zip(&other.counts).for_each(|(own, more)| *own += more);
+    }
+
+    fn reach(&mut self, places: usize) {
+        self.counts.resize(places.max(self.counts.len()), 0);
+    }
+
+    /// Among the first of each of these numbers of runs.
+    pub(super) fn told(&self, numbers: &[u64]) -> Vec<u64> {
+        let mut all = 0;
+        let counts = self.counts.iter().copied().chain(std::iter::repeat(0));
+        let told = counts.zip(numbers).map(|(more, _)| {
+            all += more;
+            all
+        });
+        told.collect()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

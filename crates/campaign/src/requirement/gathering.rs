@@ -6,7 +6,7 @@ use std::cmp::Ordering;
 
 use super::{
     Bound, FailedRuns, Requirement,
-    convergence::Prefixes,
+    convergence::{CountedAmong, Prefixes},
     deciding::{Deciding, Looks},
     distribution::Ranks,
 };
@@ -38,6 +38,8 @@ pub(super) struct Gathering {
     group: u64,
     counted: bool,
     looks: Looks,
+    /// After so many runs they are.
+    looks_after: Vec<u64>,
 }
 
 /// Counts, and the worst runs.
@@ -57,6 +59,8 @@ pub(crate) struct Tally {
     pub(super) worst: Vec<RunBeyond>,
     /// The runs that count, by their numbers.
     pub(super) prefixes: Prefixes,
+    /// Those of them that were there at each look.
+    at_looks: CountedAmong,
 }
 
 /// What one pass gathers.
@@ -78,13 +82,23 @@ impl Gathering {
             Bound::Between(..) => Some(Survey::new(runs)),
         };
         let (tally, numbers) = (Tally::default(), Survey::new(runs));
-        let (group, looks) = (group.max(1), Looks::Once);
-        Self { requirement, tally, numbers, excess, group, counted: false, looks }
+        let (group, looks, looks_after) = (group.max(1), Looks::Once, Vec::new());
+        Self { requirement, tally, numbers, excess, group, counted: false, looks, looks_after }
     }
 
     /// The same, with runs that are looked at so often before a verdict.
     pub(super) fn looked_at(self, looks: Looks) -> Self {
         Self { looks, ..self }
+    }
+
+    /// The same, with runs that are looked at after so many: the numbers rise.
+    pub(super) fn looked_after(self, looks_after: Vec<u64>) -> Self {
+        Self { looks_after, ..self }
+    }
+
+    /// How many runs count at each look.
+    pub(super) fn counted_at_looks(&self) -> Vec<u64> {
+        self.tally.at_looks.told(&self.looks_after)
     }
 
     /// How often they are.
@@ -113,8 +127,10 @@ impl Gathering {
         for (run, number) in runs {
             if let Some(tally) = &mut part.tally {
                 tally.add(run, number, bound);
-                let fails = self.requirement.fails(number);
-                fails.into_iter().for_each(|fails| tally.prefixes.add(run / self.group, fails));
+                if let Some(fails) = self.requirement.fails(number) {
+                    tally.prefixes.add(run / self.group, fails);
+                    tally.at_looks.add(run, &self.looks_after);
+                }
             }
             numbers.extend(number.filter(|x| x.is_finite()).map(|x| (run, x)));
         }
@@ -250,6 +266,7 @@ impl Tally {
         self.keep_first_infinite();
         self.beyond += other.beyond;
         self.prefixes.merge(&other.prefixes);
+        self.at_looks.merge(&other.at_looks);
         self.worst.extend(other.worst);
         self.worst.sort_by(|a, b| worse(bound, a, b));
         self.worst.truncate(WORST);

@@ -72,6 +72,9 @@ pub struct Judgement {
     /// The share that fails it among the first so many runs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     convergence: Vec<ConvergencePoint>,
+    /// How many runs counted at each look of a rule.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    counted_at_looks: Vec<u64>,
     /// How many vehicles keep it, of runs that are flights of vehicles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     vehicles: Option<VehiclesKeeping>,
@@ -130,6 +133,7 @@ impl Judgement {
             convergence: tally
                 .prefixes
                 .estimates(|failures, runs| deciding.share(failures, runs))?,
+            counted_at_looks: gathering.counted_at_looks(),
             vehicles: None,
         })
     }
@@ -283,6 +287,12 @@ impl Judgement {
     #[must_use]
     pub fn convergence(&self) -> &[ConvergencePoint] {
         &self.convergence
+    }
+
+    /// How many runs counted at each look of a rule, the first look first; nothing if none looked.
+    #[must_use]
+    pub fn counted_at_looks(&self) -> &[u64] {
+        &self.counted_at_looks
     }
 
     /// The verdict in a line, with what it rests on.

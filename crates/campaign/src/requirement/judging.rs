@@ -47,6 +47,14 @@ impl Judging {
         self
     }
 
+    /// The same of runs that are looked at after so many, of which it is told how many count: the numbers rise.
+    #[must_use]
+    pub fn looked_after(mut self, runs: &[u64]) -> Self {
+        let gatherings = std::mem::take(&mut self.gatherings).into_iter();
+        self.gatherings = gatherings.map(|of| of.looked_after(runs.to_vec())).collect();
+        self
+    }
+
     /// Looks at a block, once at each and in any order.
     pub fn look(&self, block: &Table) {
         if self.gatherings.is_empty() {

@@ -5,14 +5,24 @@ use crate::convergence_figure;
 use crate::svg::tests::read;
 use gyradius_campaign::{Cell, Column, Judging, Measured, Runs, Table};
 use proptest::prelude::*;
+use std::collections::BTreeSet;
 
 fn judged(numbers: &[Option<f64>], requirement: &Requirement) -> Option<Judgement> {
+    judged_at(&[], numbers, requirement)
+}
+
+/// After looks at so many runs.
+fn judged_at(
+    looks: &[u64],
+    numbers: &[Option<f64>],
+    requirement: &Requirement,
+) -> Option<Judgement> {
     let columns = vec![Column::number("x", "1", "A number.")];
     let mut table = Table::new("model", 0, columns).unwrap();
     for x in numbers {
         table.push(None, [Cell::from(*x)]).unwrap();
     }
-    let judging = Judging::new([requirement.clone()], numbers.len() as u64, 1);
+    let judging = Judging::new([requirement.clone()], numbers.len() as u64, 1).looked_after(looks);
     judging.look(&table);
     judging.finish(&Runs::from(table)).unwrap().pop()
 }
@@ -58,7 +68,7 @@ proptest! {
         let judged: Vec<Judgement> = models.iter().filter_map(|numbers| judged(numbers, &requirement)).collect();
         let names: Vec<String> = (0..judged.len()).map(|i| format!("model {i}")).collect();
         let models: Vec<(&str, &Judgement)> = names.iter().map(String::as_str).zip(&judged).collect();
-        for drawing in [distribution_figure("f", "c", &requirement, Some("m"), &models), convergence_figure("f", "c", &requirement, &models, &[100, 1000])] {
+        for drawing in [distribution_figure("f", "c", &requirement, Some("m"), &models), convergence_figure("f", "c", &requirement, &models)] {
             let seen = read(&drawing.svg);
             prop_assert!(seen.contains("a <name>") && !seen.contains(": ."));
             prop_assert!(names.iter().all(|name| seen.contains(name)));
@@ -71,6 +81,29 @@ proptest! {
         prop_assert_eq!(seen.contains("failed or have no number"), any_failed);
         let any_bound = judged.iter().any(|judgement| judgement.tolerance().is_some());
         prop_assert_eq!(seen.contains("tolerance point"), any_bound);
+    }
+
+    /// Looks are marked at how many runs counted then, once each, as far as the axis reaches.
+    #[test]
+    fn looks_are_marked_where_runs_count(
+        numbers in prop::collection::vec(prop::option::weighted(0.6, 0.0..2.0_f64), 1..300),
+        looks in prop::collection::btree_set(1..400_u64, 0..40),
+        left_out in any::<bool>(),
+    ) {
+        let failed = if left_out { FailedRuns::LeftOut } else { FailedRuns::Against };
+        let requirement: Requirement = "x <= 1 in 60 % at 90 %".parse().unwrap();
+        let requirement = requirement.with_failed_runs(failed);
+        let looks: Vec<u64> = looks.into_iter().collect();
+        let judgement = judged_at(&looks, &numbers, &requirement).unwrap();
+        let counted = |look: &u64| numbers.iter().take(*look as usize).filter(|x| x.is_some() || !left_out).count();
+        let counted: BTreeSet<usize> = looks.iter().map(counted).collect();
+        let logs = judgement.convergence().iter().map(|e| (e.runs as f64).log10());
+        let (first, end) = crate::convergence::range(logs);
+        let logs = counted.iter().map(|counted| (*counted as f64).log10());
+        let marks = logs.filter(|log| (first..=end).contains(log)).count();
+        let svg = convergence_figure("f", "c", &requirement, &[("m", &judgement)]).svg;
+        prop_assert_eq!(svg.matches(&format!(" {}v-9", px(HIGH))).count(), marks, "{}", svg);
+        prop_assert_eq!(svg.contains("looks of the rule"), !looks.is_empty());
     }
 
     /// The axis is that of the normal law, from its own tail.
@@ -123,7 +156,7 @@ fn shares_above_the_axis_leave_the_plot() {
         let last = judgement.convergence().last().unwrap().interval.upper();
         let expected = most > f64::max(1.8 * last, 2.2 * (1.0 - requirement.probability()));
         above += usize::from(expected);
-        let svg = convergence_figure("f", "c", &requirement, &[("m", &judgement)], &[]).svg;
+        let svg = convergence_figure("f", "c", &requirement, &[("m", &judgement)]).svg;
         let seen = read(&svg);
         assert_eq!(seen.contains("m: up to"), expected, "{failing:?}: {seen}");
         // Both ends of a line at the upper edge would be a line along it.
@@ -152,7 +185,7 @@ fn a_single_number_of_runs_has_an_interval() {
     ] {
         let judgement = judged(&numbers, requirement).unwrap();
         assert_eq!(judgement.convergence().len(), usize::from(drawn), "{numbers:?}");
-        let svg = convergence_figure("f", "c", requirement, &[("m", &judgement)], &[]).svg;
+        let svg = convergence_figure("f", "c", requirement, &[("m", &judgement)]).svg;
         let pen = format!("<path {} d=\"M", band_pen(0));
         let shapes = svg.split(&pen).skip(1).map(|rest| rest.split('"').next().unwrap());
         let bars: Vec<Vec<f64>> = shapes
