@@ -11,6 +11,7 @@ mod infinite;
 mod judged_tables;
 mod kept;
 mod requirement;
+mod row_order;
 mod scratch;
 mod tables_of_others;
 mod together;

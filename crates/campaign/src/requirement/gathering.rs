@@ -34,8 +34,6 @@ pub(super) struct Gathering {
     pub(super) numbers: Survey,
     /// Of how far numbers are beyond the bound, if that is no order of the numbers themselves.
     pub(super) excess: Option<Survey>,
-    /// Runs of a group, of which the first alone is gathered.
-    group: u64,
     counted: bool,
     looks: Looks,
     /// After so many runs they are.
@@ -82,8 +80,8 @@ impl Gathering {
             Bound::Between(..) => Some(Survey::new(runs)),
         };
         let (tally, numbers) = (Tally::default(), Survey::new(runs));
-        let (group, looks, looks_after) = (group.max(1), Looks::Once, Vec::new());
-        Self { requirement, tally, numbers, excess, group, counted: false, looks, looks_after }
+        let (looks, looks_after) = (Looks::Once, Vec::new());
+        Self { requirement, tally, numbers, excess, counted: false, looks, looks_after }
     }
 
     /// The same, with runs that are looked at so often before a verdict.
@@ -120,15 +118,19 @@ impl Gathering {
         waits.then_some(Part { bound, tally, numbers, excess })
     }
 
-    /// Adds runs to what is gathered, each with what it has of the quantity.
-    pub(super) fn gather(&self, part: &mut Part, runs: impl Iterator<Item = (u64, Option<f64>)>) {
+    /// Adds runs to what is gathered, each with its place among those that are gathered and what it has of the quantity.
+    pub(super) fn gather(
+        &self,
+        part: &mut Part,
+        runs: impl Iterator<Item = (u64, u64, Option<f64>)>,
+    ) {
         let bound = self.requirement.bound();
         let mut numbers = Vec::new();
-        for (run, number) in runs {
+        for (run, place, number) in runs {
             if let Some(tally) = &mut part.tally {
                 tally.add(run, number, bound);
                 if let Some(fails) = self.requirement.fails(number) {
-                    tally.prefixes.add(run / self.group, fails);
+                    tally.prefixes.add(place, fails);
                     tally.at_looks.add(run, &self.looks_after);
                 }
             }

@@ -1,8 +1,6 @@
 //! What runs say of a requirement: how many do not keep it, the bound that the required share keeps, and the verdict.
 
-use gyradius_statistics::{
-    ConfidenceSequence, Interval, Moments, Proportion, StatisticsError, Verdict,
-};
+use gyradius_statistics::{ConfidenceSequence, Interval, Moments, Proportion, Verdict};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -13,17 +11,13 @@ use super::{
     distribution::Distribution,
     gathering::{Gathering, RunBeyond},
     groups::Groups,
+    judgement_error::JudgementError,
     rounding::{
         one_decimal, percent_beside, percent_or_less, percent_or_more, rounded_down,
         stated_in_percent,
     },
 };
-use crate::{
-    folder::is_zero,
-    foreign::{ForeignError, RowsError, TwiceError},
-    number::plain,
-    runs_error::RunsError,
-};
+use crate::{folder::is_zero, number::plain};
 
 /// What runs say of a requirement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -239,11 +233,6 @@ impl Judgement {
     #[must_use]
     pub fn first_infinite(&self) -> &[u64] {
         &self.first_infinite
-    }
-
-    /// The numbers of the runs that are named one by one, to be called by others.
-    pub(super) fn named_runs_mut(&mut self) -> impl Iterator<Item = &mut u64> {
-        self.worst.iter_mut().map(|run| &mut run.run).chain(&mut self.first_infinite)
     }
 
     /// Share of the runs that count that keep it.
@@ -481,25 +470,4 @@ fn words(verdict: Verdict) -> &'static str {
         Verdict::NotMet => "NOT MET",
         Verdict::Undecided { .. } => "NOT DECIDED",
     }
-}
-
-/// Why runs cannot be judged.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum JudgementError {
-    /// The table cannot be read.
-    #[error(transparent)]
-    Table(#[from] ForeignError),
-    /// The table holds the rows of some runs only.
-    #[error(transparent)]
-    Rows(#[from] RowsError),
-    /// A run stands twice in the table.
-    #[error(transparent)]
-    Twice(#[from] TwiceError),
-    /// The runs cannot be read.
-    #[error(transparent)]
-    Runs(#[from] RunsError),
-    /// The shares or the number of runs are out of range.
-    #[error(transparent)]
-    Statistics(#[from] StatisticsError),
 }

@@ -116,7 +116,8 @@ impl Judging {
         self.gatherings.par_iter().zip(&mut parts).for_each(|(gathering, part)| {
             let Some(part) = part else { return };
             let runs = (block.first()..).zip(gathering.requirement.quantity().numbers(block));
-            gathering.gather(part, runs.filter(|(run, _)| run.is_multiple_of(self.group)));
+            let first = runs.filter(|(run, _)| run.is_multiple_of(self.group));
+            gathering.gather(part, first.map(|(run, number)| (run, run / self.group, number)));
         });
         parts
     }

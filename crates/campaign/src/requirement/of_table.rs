@@ -2,15 +2,13 @@
 
 use gyradius_statistics::Proportion;
 use rayon::prelude::*;
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    iter,
-};
+use std::iter;
 
 use super::{
     Judgement, JudgementError, Measured, Requirement,
     gathering::{Gathering, Part},
     groups::Groups,
+    numbering::Numbering,
 };
 use crate::{
     column::Column,
@@ -18,9 +16,9 @@ use crate::{
 };
 
 impl Judgement {
-    /// Judges requirements by the runs of a table, of which a row is a run, as [`ForeignTable::counting`] says. The
-    /// worst runs have the numbers in the column `run` if it has whole numbers, and those of their rows, from 0, if there is no such column. All
-    /// threads of the pool that this is called in are used.
+    /// Judges requirements by the runs of a table, of which a row is a run, as [`ForeignTable::counting`] says.
+    /// Runs have the numbers in the column `run` if all of these are whole, whatever the order of the rows, and those of their rows, from 0, if there is
+    /// no such column. All threads of the pool that this is called in are used.
     ///
     /// # Errors
     /// The table cannot be read, has no such column, has no or too many rows, has the same run twice by its columns `model` and `run`, or
@@ -46,8 +44,9 @@ impl Judgement {
         let mut gatherings: Vec<Gathering> = requirements.iter().map(gathering).collect();
         // Of runs that have something in common it must be known which they are.
         let of_groups = group > 1;
+        let numbering = if of_groups { Numbering::AnyOrder } else { Numbering::of(table) };
         let run_column: Vec<String> =
-            of_groups.then(|| Column::RUN.to_owned()).into_iter().collect();
+            numbering.is_by_column().then(|| Column::RUN.to_owned()).into_iter().collect();
         let new_groups = |r: &Requirement| Groups::new(group, r.probability());
         let mut groups: Vec<Groups> =
             if of_groups { requirements.iter().map(new_groups).collect() } else { Vec::new() };
@@ -60,24 +59,21 @@ impl Judgement {
                 }
                 let groups = groups.iter().map(Some).chain(iter::repeat(None));
                 let judged = gatherings.iter().zip(groups);
-                let mut judged: Vec<Self> = judged
+                return judged
                     .map(|(gathering, groups)| Self::of(gathering)?.of_groups(groups))
-                    .collect::<Result<_, _>>()?;
-                if !of_groups && table.columns().iter().any(|name| name == Column::RUN) {
-                    Self::number_runs(&mut judged, table);
-                }
-                return Ok(judged);
+                    .collect();
             }
             let (mut first, mut all_known) = (0, true);
             table.scan_beside(&names, &run_column, |numbers| {
                 let rows = numbers.first().map_or(0, Vec::len);
+                let row = first;
+                first += rows as u64;
                 let runs: Vec<u64> = match numbers.get(names.len()) {
                     Some(runs) => {
                         runs.iter().filter_map(|run| run.and_then(Column::run_named)).collect()
                     }
-                    None => (first..).take(rows).collect(),
+                    None => (row..).take(rows).collect(),
                 };
-                first += rows as u64;
                 all_known &= runs.len() == rows;
                 if !all_known {
                     return;
@@ -87,8 +83,13 @@ impl Judgement {
                 };
                 gatherings.par_iter().zip(&mut parts).for_each(|(gathering, part)| {
                     let Some(part) = part else { return };
-                    let of_runs = runs.iter().copied().zip(number(gathering));
-                    gathering.gather(part, of_runs.filter(|(run, _)| run.is_multiple_of(group)));
+                    let of_runs = (row..).zip(&runs).zip(number(gathering));
+                    let first = of_runs.filter(|((_, run), _)| run.is_multiple_of(group));
+                    let placed = first.map(|((row, run), number)| match numbering {
+                        Numbering::Rows | Numbering::InOrder => (*run, row, number),
+                        Numbering::AnyOrder => (*run, run / group, number),
+                    });
+                    gathering.gather(part, placed);
                 });
                 for (gathering, groups) in gatherings.iter().zip(&mut groups).filter(|_| !counted) {
                     for (run, x) in runs.iter().zip(number(gathering)) {
@@ -104,29 +105,6 @@ impl Judgement {
                 if let Some(part) = part {
                     gathering.advance(part)?;
                 }
-            }
-        }
-    }
-
-    /// Calls the worst runs by their numbers in the table, where all of these are whole; rows they were before.
-    fn number_runs(judged: &mut [Self], table: &ForeignTable) {
-        let named = judged.iter_mut().flat_map(Self::named_runs_mut);
-        let rows: BTreeSet<u64> = named.map(|run| *run).collect();
-        let mut numbers = BTreeMap::new();
-        let mut first = 0;
-        // As they are written: runs that failed are among them.
-        let read = table.scan_beside(&[], &[Column::RUN.to_owned()], |columns| {
-            let column = columns.first().map_or(&[][..], Vec::as_slice);
-            let end = first + column.len() as u64;
-            for row in rows.range(first..end) {
-                let number = column[(row - first) as usize];
-                numbers.extend(number.and_then(Column::run_named).map(|number| (*row, number)));
-            }
-            first = end;
-        });
-        if read.is_ok() && numbers.len() == rows.len() {
-            for run in judged.iter_mut().flat_map(Self::named_runs_mut) {
-                *run = numbers[run];
             }
         }
     }
