@@ -98,17 +98,23 @@ impl Program {
         self.timeout_s
     }
 
-    /// The places of its words that name files which are there, with the SHA-256 of each file, in hexadecimal: of regular files
+    /// The places of its words that name files which are there, whole or behind a `=`, with the SHA-256 of each file, in hexadecimal: of regular files
     /// alone, for a pipe or a device has no end.
     pub fn files_sha256(&self) -> impl Iterator<Item = (usize, String)> {
         self.named_files().map(|file| (file.place, file.sha256))
     }
 
-    /// The files that its words name.
+    /// The files that its words name, whole or behind a `=`, as in `--config=conf.json`.
     pub(super) fn named_files(&self) -> impl Iterator<Item = NamedFile> {
-        let words = self.words.iter().map(Path::new).enumerate();
-        let files = words.filter(|(_, word)| word.is_absolute() && word.is_file());
-        files.filter_map(|(place, file)| NamedFile::new(place, file))
+        self.words.iter().enumerate().filter_map(|(place, word)| {
+            let whole = Path::new(word);
+            if whole.is_absolute() && whole.is_file() {
+                return NamedFile::new(place, whole);
+            }
+            let word = word.to_str()?;
+            let behind = word.match_indices('=').map(|(at, _)| self.folder.join(&word[at + 1..]));
+            behind.filter(|file| file.is_file()).find_map(|file| NamedFile::new(place, &file))
+        })
     }
 
     /// How long a run that begins now is waited for.
@@ -162,4 +168,36 @@ pub enum ProgramError {
         /// What the system says.
         problem: String,
     },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::fs;
+
+    proptest! {
+        /// A file is watched wherever it stands in a word: alone, behind a `=` or the second one, by its name or its full path; and no
+        /// folder, no file that is not there, and none whose name begins elsewhere.
+        #[test]
+        fn files_behind_equals_signs_are_named(
+            words in prop::collection::vec((0..5_usize, 0..4_usize, any::<bool>()), 1..8),
+        ) {
+            let folder = tempfile::tempdir().unwrap();
+            fs::write(folder.path().join("conf.json"), "{}").unwrap();
+            fs::write(folder.path().join("b=c.json"), "{}").unwrap();
+            fs::create_dir(folder.path().join("folder")).unwrap();
+            let word = |(before, name, is_full): &(usize, usize, bool)| {
+                let name = ["conf.json", "b=c.json", "folder", "absent.json"][*name];
+                let name = if *is_full { folder.path().join(name).display().to_string() } else { name.to_owned() };
+                format!("{}{name}", ["", "--config=", "-Dx=y=", "=", "-I"][*before])
+            };
+            let command: Vec<String> = ["sh".to_owned()].into_iter().chain(words.iter().map(word)).collect();
+            let program = Program::new(&command, folder.path()).unwrap();
+            let found: Vec<usize> = program.files_sha256().map(|(place, _)| place).collect();
+            let is_named = |(before, name, _): &(usize, usize, bool)| *before < 4 && *name < 2;
+            let named = words.iter().zip(1..).filter(|(word, _)| is_named(word)).map(|(_, place)| place);
+            prop_assert_eq!(found, named.collect::<Vec<_>>(), "{:?}", command);
+        }
+    }
 }
