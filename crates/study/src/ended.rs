@@ -12,7 +12,7 @@ pub struct Ended {
     pub until: Until,
     /// How many there are of each model.
     pub runs: u64,
-    /// How often they were looked at, if nothing was there before.
+    /// How often they were looked at, from the first look that counts.
     looks: u64,
     /// Whether that was enough, and not the greatest number of runs.
     pub enough: bool,
@@ -53,10 +53,17 @@ impl fmt::Display for Ended {
         if let Some(there) = until.first_look() {
             write!(
                 f,
-                "{there} runs a model were there before the rule was asked, more than it would have asked for. "
+                "{there} runs a model were there already, more than the rule would have asked for: the first look that counts was at all of them. "
             )?;
         }
-        let (rule, most, s) = (until.rule(), until.most_runs(), if *looks == 1 { "" } else { "s" });
+        let (rule, most) = (until.rule(), until.most_runs());
+        // Those before the first one that counts were at fewer runs, or before failed runs were done again.
+        let looks = match (looks, until.first_look()) {
+            (1, None) => "1 look".to_owned(),
+            (1, Some(_)) => "1 look that counts".to_owned(),
+            (looks, None) => format!("{looks} looks"),
+            (looks, Some(_)) => format!("{looks} looks that count"),
+        };
         if *is_interrupted {
             write!(
                 f,
@@ -65,13 +72,13 @@ impl fmt::Display for Ended {
         } else if *enough {
             write!(
                 f,
-                "The rule “{rule}” ended the runs after {runs} of each model, at {looks} look{s}; there might have been {most}."
+                "The rule “{rule}” ended the runs after {runs} of each model, at {looks}; there might have been {most}."
             )
         } else {
             write!(
                 f,
-                "The rule “{rule}” did not end the runs: there were {runs} of each model, which is the greatest number, at {looks} \
-                 look{s}."
+                "The rule “{rule}” did not end the runs: there were {runs} of each model, which is the greatest number, at \
+                 {looks}."
             )
         }
     }

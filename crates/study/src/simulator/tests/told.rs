@@ -192,6 +192,53 @@ fn drivers_of_what_seldom_happens_are_warned_of() {
     assert!(!figure.contains("up to 0.5, too few") && !figure.contains("y, too few"), "{figure}");
 }
 
+/// Runs that failed are done again after a rule had looked at them, and would have ended them before: what the page says of the looks is
+/// true of them and of those before.
+#[test]
+fn looks_before_failed_runs_were_done_again_are_not_denied() {
+    let (mut sooner, mut as_before) = (0, 0);
+    for within in [0.03, 0.05, 0.08, 0.1] {
+        for failing in [0.05, 0.4] {
+            let folder = folder();
+            let text = format!(
+                "runs = 3000\n{SCENARIO}[until]\nrule = \"mean(y) within {within}\"\nlook_every = 20\n"
+            );
+            let out = folder.path().join("out");
+            let study = |failing: f64, retry_failed: bool| {
+                let function = SimulatorFunction::new(move |run: &RunInputs<'_>| {
+                    let x = run.input("x").ok_or("no x")?;
+                    if x < failing {
+                        Err("no licence".into())
+                    } else {
+                        Ok(vec![("y".to_owned(), x)])
+                    }
+                });
+                let scenario = SimulatorScenario::from_toml(&text, folder.path()).unwrap();
+                let scenario = scenario.with_function(function).unwrap();
+                let options = Options { retry_failed, ..Options::to(out.clone()) };
+                let study = scenario.study(&options, &|_| {}, &|_| {}).unwrap();
+                let ended = study.summary().head.ended.clone().unwrap();
+                (ended, fs::read_to_string(out.join("report.md")).unwrap())
+            };
+            let (before, page) = study(failing, false);
+            assert!(!page.contains("look that counts"), "{page}");
+            let (after, page) = study(0.0, true);
+            assert!(after.runs >= before.runs && !page.contains("before the rule was asked"));
+            let first = after.until.first_look();
+            let said = format!(
+                "{} runs a model were there already, more than the rule would have asked for: the first look that counts was at all of them",
+                before.runs
+            );
+            assert_eq!(page.contains(&said), first.is_some(), "{page}");
+            assert_eq!(page.contains("at 1 look that counts"), first.is_some(), "{page}");
+            assert_eq!(after.looks()[0], first.unwrap_or(20));
+            sooner += usize::from(first.is_some());
+            as_before += usize::from(first.is_none());
+        }
+    }
+    assert!(sooner > 0 && as_before > 0, "{sooner} {as_before}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
