@@ -84,7 +84,7 @@ fn solid(around: Node<'_, '_>, format: Format, angles: &Angles) -> Result<Solid,
     let empty = || GeometryProblem::Empty { element: around.name().to_owned() };
     let shape = shapes.next().ok_or_else(empty)?;
     if let Some(second) = shapes.next() {
-        let [first, second] = [shape, second].map(|shape| shortened(shape.name()));
+        let [first, second] = [shape, second].map(|shape| shortened(kind(shape)));
         return Err(GeometryProblem::Several { first, second });
     }
     // Attributes in URDF, elements in SDF.
@@ -106,7 +106,7 @@ fn solid(around: Node<'_, '_>, format: Format, angles: &Angles) -> Result<Solid,
     };
     let one = |name| Ok::<f64, GeometryProblem>(list(name, 1)?[0]);
     let three = |name| list(name, 3).map(|x| [x[0], x[1], x[2]]);
-    let shape = match shape.name() {
+    let shape = match kind(shape) {
         "box" => Shape::Box(three("size")?),
         "sphere" => Shape::Ellipsoid([one("radius")?; 3]),
         "ellipsoid" => Shape::Ellipsoid(three("radii")?),
@@ -127,6 +127,11 @@ fn solid(around: Node<'_, '_>, format: Format, angles: &Angles) -> Result<Solid,
         other => return Err(GeometryProblem::Shape { shape: shortened(other) }),
     };
     Ok(Solid::new(centre, rotation, shape))
+}
+
+/// The name of a shape. Those that are Drake's own have a prefix.
+fn kind<'a>(shape: Node<'_, 'a>) -> &'a str {
+    if shape.is_macro() { shape.name() } else { shape.local_name() }
 }
 
 /// Points of solids, in the frame of the link. Of a sphere or a cylinder they lie on it, so that their hull is in it.

@@ -70,14 +70,14 @@ pub(crate) fn is_body(node: Node<'_, '_>, format: Format) -> bool {
     let around: &[&str] = match format {
         Format::Mjcf => &["body", "frame", "replicate", "worldbody"],
         Format::Sdf => &["model", "world", "population", "actor"],
-        // Without their prefix in files of old versions of xacro.
+        // Macros have no prefix in files of old versions of xacro.
         Format::Urdf | Format::Csv | Format::Toml | Format::Json => {
             &[GAZEBO, "model", "macro", "if", "unless"]
         }
     };
     is_element(node, format)
         && node.ancestors().skip(1).all(|above| match above.parent() {
-            Some(_) => around.contains(&above.name()),
+            Some(_) => above.is_macro() || around.contains(&above.name()),
             None => true,
         })
 }

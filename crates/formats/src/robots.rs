@@ -79,24 +79,19 @@ pub(crate) fn each<'t, 'a>(
     products: Products,
     mut take: impl FnMut(Node<'t, 'a>, FileBody),
 ) -> Result<Gaps, Refusal> {
-    let declared = tree.macro_prefixes();
-    let is_macro = |node: Node<'_, '_>| {
-        let prefix = node.prefix();
-        prefix == MACROS || declared.contains(&prefix)
-    };
     let has_macros =
-        extension == Some(MACROS) || !declared.is_empty() || tree.nodes().any(is_macro);
+        extension == Some(MACROS) || tree.declares_macros() || tree.nodes().any(Node::is_macro);
     let mut bodies = 0;
     let mut gaps = Gaps::default();
     tree.entities().for_each(|line| gaps.add(GapKind::Entities, line));
     for node in tree.nodes() {
-        if is_macro(node) {
+        if node.is_macro() {
             gaps.add(GapKind::Macros, node.line());
         } else if node.name() == INERTIAL {
             // The line of the numbers, not of the element around them.
             let line = node.child("inertia").unwrap_or(node).line();
             // What a macro makes of what stands in it is not known.
-            if !node.ancestors().any(is_macro) && !is_in_place(node, format) {
+            if !node.ancestors().any(Node::is_macro) && !is_in_place(node, format) {
                 gaps.add(GapKind::Misplaced, line);
                 continue;
             }
@@ -112,7 +107,7 @@ pub(crate) fn each<'t, 'a>(
                 }
                 // What is missing is made by the macros in it, which are counted themselves.
                 Err(Trouble::Body(FileBodyError::Missing { .. }))
-                    if node.children().any(is_macro) =>
+                    if node.children().any(Node::is_macro) =>
                 {
                     continue;
                 }
@@ -166,7 +161,7 @@ fn includes(node: Node<'_, '_>, format: Format) -> bool {
 fn is_stray(node: Node<'_, '_>) -> bool {
     let looks = |node: Node<'_, '_>| {
         let is = |name: &str, known: &[&str]| known.iter().any(|k| k.eq_ignore_ascii_case(name));
-        is(node.name(), &[INERTIAL, "inertia", "ixx"])
+        is(node.local_name(), &[INERTIAL, "inertia", "ixx"])
             || node.attribute_names().any(|name| is(name, &["ixx", "diaginertia", "fullinertia"]))
     };
     // Of nested ones the outermost is counted.
@@ -270,10 +265,10 @@ fn sdf_or_computed(inertial: Node<'_, '_>, products: Products) -> Result<Reading
     }
 }
 
-/// Names of attributes and children.
+/// Names of attributes and children, but for those that are none of the format's.
 fn names_in<'a>(node: Node<'_, 'a>) -> impl Iterator<Item = &'a str> {
-    let attributes = node.attribute_names().filter(|name| !name.contains(':') && *name != "xmlns");
-    attributes.chain(node.children().map(Node::name))
+    let all = node.attribute_names().chain(node.children().map(Node::name));
+    all.filter(|name| !name.contains(':') && *name != "xmlns")
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The elements of an XML file in the order they stand, with byte positions.
 //!
-//! Namespaces are not resolved, for files expanded from xacro keep prefixes that nobody declares: an
-//! element is known by the name after its prefix, but for the prefix of xacro's macros.
+//! Namespaces are not resolved, for files expanded from xacro keep prefixes that nobody declares: an element without a prefix, or
+//! with that of the root, is one of the format, and any other is a macro of xacro or somebody's own.
 
 use quick_xml::{
     Reader,
@@ -29,6 +29,9 @@ struct Attribute<'a> {
 /// An element, its attributes, and the text in it.
 #[derive(Debug)]
 pub(crate) struct Element<'a> {
+    /// Its name as it is written.
+    written: &'a str,
+    /// Its name without the prefix of the root.
     name: &'a str,
     start: usize,
     /// Where its content begins, if it has an end tag.
@@ -53,6 +56,8 @@ pub(crate) struct Tree<'a> {
     elements: Vec<Element<'a>>,
     /// Where references to entities stand that the file declares itself.
     entities: Vec<usize>,
+    /// The prefixes that are declared for macros.
+    macros: Vec<&'a str>,
 }
 
 /// The usual prefix of macros, and a part of what any other is declared as.
@@ -72,7 +77,8 @@ impl<'a> Tree<'a> {
     pub(crate) fn parse(source: &'a Text) -> Result<Self, Refusal> {
         let text = source.as_str();
         let mut reader = Reader::from_str(text);
-        let mut tree = Self { source, elements: Vec::new(), entities: Vec::new() };
+        let mut tree =
+            Self { source, elements: Vec::new(), entities: Vec::new(), macros: Vec::new() };
         let mut open: Vec<usize> = Vec::new();
         loop {
             let before = usize::try_from(reader.buffer_position()).unwrap_or(text.len());
@@ -119,12 +125,13 @@ impl<'a> Tree<'a> {
             }
         }
         if let Some(index) = open.last() {
-            let Element { name, start, .. } = tree.elements[*index];
-            return Err(source.malformed(start, format!("<{}> is not closed", shortened(name))));
+            let Element { written, start, .. } = tree.elements[*index];
+            return Err(source.malformed(start, format!("<{}> is not closed", shortened(written))));
         }
         if tree.elements.is_empty() {
             return Err(source.malformed(0, "there is no element"));
         }
+        tree.macros = tree.macro_prefixes();
         Ok(tree)
     }
 
@@ -157,8 +164,12 @@ impl<'a> Tree<'a> {
             attributes.push(Attribute { name, value, start, whole });
         }
         let index = self.elements.len();
+        let written = self.own(tag.name().as_ref());
+        let root = self.elements.first().map_or(written, |root| root.written);
+        let is_own = parts(written).0 == parts(root).0;
         self.elements.push(Element {
-            name: self.own(tag.name().as_ref()),
+            written,
+            name: if is_own { parts(written).1 } else { written },
             start: before,
             inside: None,
             closed: None,
@@ -224,8 +235,12 @@ impl<'a> Tree<'a> {
         self.entities.iter().map(|at| self.source.line(*at))
     }
 
-    /// The prefixes that are declared for macros.
-    pub(crate) fn macro_prefixes(&self) -> Vec<&'a str> {
+    /// Whether a prefix is declared for macros, which says that the file is written with xacro.
+    pub(crate) fn declares_macros(&self) -> bool {
+        !self.macros.is_empty()
+    }
+
+    fn macro_prefixes(&self) -> Vec<&'a str> {
         let attributes = self.elements.iter().flat_map(|element| &element.attributes);
         let declared = attributes.filter_map(|attribute| {
             let prefix = attribute.name.strip_prefix("xmlns:")?;
@@ -257,14 +272,26 @@ impl<'t, 'a> Node<'t, 'a> {
         &self.tree.elements[self.index]
     }
 
-    /// Its name after the prefix.
+    /// Its name in the format: without the prefix of the root, and with any other, so that it is none of the format's then.
     pub(crate) fn name(self) -> &'a str {
-        parts(self.element().name).1
+        self.element().name
+    }
+
+    /// Its name after any prefix.
+    pub(crate) fn local_name(self) -> &'a str {
+        parts(self.element().written).1
+    }
+
+    /// Whether it is a macro of xacro.
+    pub(crate) fn is_macro(self) -> bool {
+        let prefix = self.prefix();
+        // Old versions knew their elements without a prefix, and no format has one of this name.
+        prefix == MACROS || self.tree.macros.contains(&prefix) || self.name() == "insert_block"
     }
 
     /// The prefix of its name, empty if it has none.
     pub(crate) fn prefix(self) -> &'a str {
-        parts(self.element().name).0
+        parts(self.element().written).0
     }
 
     pub(crate) fn line(self) -> usize {
@@ -289,18 +316,20 @@ impl<'t, 'a> Node<'t, 'a> {
         (self.index + 1..self.element().end).map(move |index| Self { tree: self.tree, index })
     }
 
-    /// The first child of this name with the prefix of this element, or of any prefix.
+    /// The first child of this name.
     pub(crate) fn child(self, name: &str) -> Option<Self> {
-        let named = || self.children().filter(|node| node.name() == name);
-        named().find(|node| node.prefix() == self.prefix()).or_else(|| named().next())
+        self.children().find(|node| node.name() == name)
     }
 
     /// As [`child`](Self::child), where the format has one at most: readers of files with two do not agree which counts.
     pub(crate) fn only_child(self, name: &'static str) -> Result<Option<Self>, FileBodyError> {
-        let child = self.child(name);
-        let like = |node: &Self| child.is_some_and(|child| child.prefix() == node.prefix());
-        let count = self.children().filter(|node| node.name() == name).filter(like).count();
-        if count > 1 { Err(FileBodyError::Several { element: name }) } else { Ok(child) }
+        let mut named = self.children().filter(|node| node.name() == name);
+        let child = named.next();
+        if named.next().is_some() {
+            Err(FileBodyError::Several { element: name })
+        } else {
+            Ok(child)
+        }
     }
 
     /// This element and those around it, from the inside.
@@ -336,6 +365,7 @@ impl<'t, 'a> Node<'t, 'a> {
         let key = |node: &Self| match node.name() {
             "link" | "body" | "macro" => Some("name"),
             "gazebo" => Some("reference"),
+            _ if node.is_macro() && node.local_name() == "macro" => Some("name"),
             _ => None,
         };
         let found = self.ancestors().skip(1).find_map(|node| Some((node, key(&node)?)));
@@ -367,7 +397,7 @@ impl<'t, 'a> Node<'t, 'a> {
 
     /// Where an attribute more can be written, after a blank.
     pub(crate) fn after_name(self) -> usize {
-        self.element().start + 1 + self.element().name.len()
+        self.element().start + 1 + self.element().written.len()
     }
 
     /// Where a child more can be written: in an element without an end tag, before its `/>`.
@@ -377,7 +407,7 @@ impl<'t, 'a> Node<'t, 'a> {
 
     /// Where `/>` stands that ends this element, and the end tag that it stands for.
     pub(crate) fn closed(self) -> Option<(usize, String)> {
-        Some((self.element().closed?, format!("</{}>", self.element().name)))
+        Some((self.element().closed?, format!("</{}>", self.element().written)))
     }
 
     /// The numbers that are the text of this element.

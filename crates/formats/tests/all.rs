@@ -9,6 +9,7 @@ mod keys;
 mod mjcf_geoms;
 mod not_known;
 mod places;
+mod prefixes;
 mod quotes;
 mod robots;
 mod samples;

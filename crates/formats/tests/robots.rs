@@ -438,12 +438,12 @@ fn what_a_file_leaves_out_is_written_only_where_it_must_be() {
         ),
         (
             "a.urdf",
-            format!("<robot><link><x:inertial><origin rpy='0 0 0'/>{half}</x:inertial></link></robot>"),
+            format!("<x:robot><link><x:inertial><origin rpy='0 0 0'/>{half}</x:inertial></link></x:robot>"),
             "<x:inertial><origin xyz=\"0.5 0.0 0.0\" rpy='0 0 0'/><mass",
         ),
         (
             "a.urdf",
-            format!("<robot><link><x:inertial>{half}</x:inertial></link></robot>"),
+            format!("<x:robot><link><x:inertial>{half}</x:inertial></link></x:robot>"),
             "<x:inertial><x:origin xyz=\"0.5 0.0 0.0\"/><mass",
         ),
         (
@@ -454,7 +454,7 @@ fn what_a_file_leaves_out_is_written_only_where_it_must_be() {
         ),
         (
             "a.sdf",
-            format!("<sdf version='1.9'><link><x:inertial>{sdf}</x:inertial></link></sdf>"),
+            format!("<x:sdf version='1.9'><link><x:inertial>{sdf}</x:inertial></link></x:sdf>"),
             "<x:inertial><x:pose>0.5 0.0 0.0 0 0 0</x:pose><mass>4.0</mass>",
         ),
         (
@@ -723,7 +723,7 @@ impl Partial {
         }
         let inertial = element("inertial", &attributes, &inside);
         let version = if self.in_attributes { "1.0" } else { "1.9" };
-        format!("<sdf version='{version}'><link name='a'>{inertial}<collision/></link></sdf>")
+        format!("<{p}sdf version='{version}'><link name='a'>{inertial}<collision/></link></{p}sdf>")
     }
 }
 
