@@ -189,3 +189,52 @@ fn deviations_of_the_first_draws_are_told_to_be_theirs() {
     assert!(told[1].starts_with("the first 2000 draws\n"), "{}", told[1]);
     assert_eq!(told[1], told[2]);
 }
+
+/// A block for Gazebo, wherever it stands, changes neither what is drawn of a link nor which link a name means.
+#[test]
+fn blocks_for_gazebo_change_no_link() {
+    let shell = Scratch::new();
+    let link = |name: &str| {
+        format!(
+            "<link name='{name}'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='2' iyz='0' izz='2.5'/>\
+             </inertial></link>"
+        )
+    };
+    let inertial = "<inertial><mass>3</mass></inertial>";
+    let blocks = [
+        String::new(),
+        format!("<gazebo reference='a'>{inertial}</gazebo>"),
+        format!("<gazebo><link name='a'>{inertial}</link></gazebo>"),
+        "<gazebo><link name='a'/></gazebo>".to_owned(),
+    ];
+    let mut first = None;
+    for (i, block) in blocks.iter().enumerate() {
+        for place in 0..3 {
+            let mut parts = vec![link("a"), link("b")];
+            parts.insert(place, block.clone());
+            let name = format!("{i}-{place}.urdf");
+            fs::write(shell.path(&name), format!("<robot name='r'>{}</robot>", parts.concat()))
+                .unwrap();
+            for picked in [&[][..], &["--links", "a"], &["--links", "a,b"]] {
+                let drawn = shell.run(&[&["draw", &name, "-n", "3"], &STATED[..], picked].concat());
+                let told = String::from_utf8(drawn.stderr).unwrap();
+                assert!(drawn.status.success(), "{name} {picked:?}: {told}");
+                let table = String::from_utf8(drawn.stdout).unwrap();
+                let of_a: Vec<String> = table
+                    .lines()
+                    .filter(|line| line.starts_with("a,"))
+                    .map(str::to_owned)
+                    .collect();
+                assert_eq!(of_a.len(), 3, "{table}");
+                assert_eq!(first.get_or_insert(of_a.clone()), &of_a, "{name} {picked:?}");
+                let listed = told.matches("left as it is: a:").count();
+                assert_eq!(listed, usize::from(block.contains("inertial")), "{name}: {told}");
+            }
+        }
+    }
+    // Alone, it is no link.
+    fs::write(shell.path("alone.urdf"), format!("<robot>{}{}</robot>", blocks[2], link("b")))
+        .unwrap();
+    let alone = ["alone.urdf", "-n", "1", "--mass", "5%", "--links", "a"];
+    assert!(refused(&shell, &alone).contains("the links with inertia are b"));
+}

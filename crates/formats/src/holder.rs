@@ -13,12 +13,25 @@ pub(crate) fn holder<'t, 'a>(inertial: Node<'t, 'a>, format: Format) -> Option<N
 
 /// The inertias of a body or link, in the order of the file.
 pub(crate) fn inertials<'t, 'a>(body: Node<'t, 'a>, format: Format) -> Vec<Node<'t, 'a>> {
+    within(body, &|node| format == Format::Mjcf && is_frame(node))
+}
+
+/// As [`inertials`], and those that macros of xacro may leave out.
+pub(crate) fn possible_inertials<'t, 'a>(body: Node<'t, 'a>, format: Format) -> Vec<Node<'t, 'a>> {
+    within(body, &|node| node.is_macro() || (format == Format::Mjcf && is_frame(node)))
+}
+
+/// The inertias in an element, and in those below it that may stand between.
+fn within<'t, 'a>(
+    around: Node<'t, 'a>,
+    is_between: &dyn Fn(Node<'t, 'a>) -> bool,
+) -> Vec<Node<'t, 'a>> {
     let of = |child: Node<'t, 'a>| match child.name() {
         INERTIAL => vec![child],
-        _ if format == Format::Mjcf && is_frame(child) => inertials(child, format),
+        _ if is_between(child) => within(child, is_between),
         _ => Vec::new(),
     };
-    body.children().flat_map(of).collect()
+    around.children().flat_map(of).collect()
 }
 
 /// The frames of MJCF in which an inertia of a body stands, from the inside.
@@ -67,6 +80,19 @@ fn is_element(node: Node<'_, '_>, format: Format) -> bool {
 
 /// Whether an element is that of a body of the file: it has the name, and so has everything around it that may hold bodies.
 pub(crate) fn is_body(node: Node<'_, '_>, format: Format) -> bool {
+    is_element(node, format) && is_among_bodies(node, format)
+}
+
+/// Whether MuJoCo makes bodies of an element of an MJCF file, of which it computes the inertia. A rigid one adds to a body that is there.
+pub(crate) fn is_made_into_bodies(node: Node<'_, '_>, format: Format) -> bool {
+    format == Format::Mjcf
+        && matches!(node.name(), "composite" | "flexcomp")
+        && node.attribute("rigid").is_none_or(|word| word.trim() != "true")
+        && is_among_bodies(node, format)
+}
+
+/// Whether all that is around an element may hold bodies.
+fn is_among_bodies(node: Node<'_, '_>, format: Format) -> bool {
     let around: &[&str] = match format {
         Format::Mjcf => &["body", "frame", "replicate", "worldbody"],
         Format::Sdf => &["model", "world", "population", "actor"],
@@ -75,11 +101,10 @@ pub(crate) fn is_body(node: Node<'_, '_>, format: Format) -> bool {
             &[GAZEBO, "model", "macro", "if", "unless"]
         }
     };
-    is_element(node, format)
-        && node.ancestors().skip(1).all(|above| match above.parent() {
-            Some(_) => above.is_macro() || around.contains(&above.name()),
-            None => true,
-        })
+    node.ancestors().skip(1).all(|above| match above.parent() {
+        Some(_) => above.is_macro() || around.contains(&above.name()),
+        None => true,
+    })
 }
 
 /// Whether an element is the root of a whole file: of one that is included, a part of a body may be the root.

@@ -8,13 +8,13 @@ use std::{
 };
 
 use crate::{
-    CompilerDoubt, FileBody, FileBodyError, FileProblem, Format, Gap, InertiaFile, LinkProblem,
-    Products, RobotError, compiler,
+    CompilerDoubt, FileBodyError, FileProblem, Format, Gap, InertiaFile, LinkProblem, Products,
+    RobotError, compiler,
     copy::edits,
     edit::{Edit, edited},
     frame::{self, Frame},
     geometry::{self, GeometryProblem, Solid},
-    holder::{holder, inertials, is_body, is_in_gazebo},
+    holder::{holder, inertials, is_body, is_in_gazebo, is_made_into_bodies, possible_inertials},
     kind::{known_extension, not_read},
     mjcf_geoms::Geoms,
     references, robots,
@@ -94,7 +94,8 @@ impl LinkNumbers {
 
 impl RobotLink {
     /// Name of the link, `unnamed` if it has none. The second of a name in a file is called `name#2`, or `name##2` if another
-    /// one is called so in the file, and so on. A second inertia in one link has the name of the first, and no numbers.
+    /// one is called so in the file, and so on. A second inertia in one link has the name of the first, one in a block for Gazebo that
+    /// of the link for which it stands there, and neither has numbers.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
@@ -130,9 +131,9 @@ struct Names {
 }
 
 impl Names {
-    fn of(bodies: &[FileBody]) -> Self {
-        let taken = bodies.iter().map(|body| named(body).to_owned()).collect();
-        Self { taken, counts: HashMap::new() }
+    /// Of which these stand in the file.
+    fn of<'n>(names: impl Iterator<Item = &'n str>) -> Self {
+        Self { taken: names.map(str::to_owned).collect(), counts: HashMap::new() }
     }
 
     /// A name that no other has: of those that are written in the file, the first keeps its own.
@@ -153,9 +154,27 @@ impl Names {
     }
 }
 
-/// The name of a body, or what it is called without one.
-fn named(body: &FileBody) -> &str {
-    if body.name().is_empty() { "unnamed" } else { body.name() }
+/// A name, or what is called without one.
+fn named(name: &str) -> &str {
+    if name.is_empty() { "unnamed" } else { name }
+}
+
+/// The name of a link without an inertia in the file, or of what becomes several.
+fn name_of<'t>(link: Node<'t, '_>) -> &'t str {
+    named(link.attribute("name").or(link.attribute("prefix")).unwrap_or_default())
+}
+
+/// The links and bodies for which a file states no inertia.
+fn without_inertia<'t, 'a>(tree: &'t Tree<'a>, format: Format) -> Vec<Node<'t, 'a>> {
+    let is_computed = |one: &Node<'_, '_>| format == Format::Sdf && robots::is_computed(*one);
+    let is_without = |node: &Node<'t, 'a>| {
+        is_made_into_bodies(*node, format)
+            || (is_body(*node, format)
+                // What stands there is for Gazebo, beside the links.
+                && !(format == Format::Urdf && is_in_gazebo(*node))
+                && possible_inertials(*node, format).iter().all(is_computed))
+    };
+    tree.nodes().filter(is_without).collect()
 }
 
 impl TryFrom<InertiaFile> for RobotFile {
@@ -219,18 +238,33 @@ impl RobotFile {
         let tree = Tree::parse(&text).map_err(|_| RobotError::Format { format })?;
         let (angles, products) = (frame::angles(&tree), file.products());
         let geoms = Geoms::new(&tree, &angles);
-        let mut names = Names::of(file.bodies());
+        let without = without_inertia(&tree, format);
+        let written = file.bodies().iter().map(|body| named(body.name()));
+        let mut names = Names::of(written.chain(without.iter().map(|link| name_of(*link))));
+        // Of links with several inertias, what the first is called, by its place.
+        let mut firsts: HashMap<usize, String> = HashMap::new();
         let mut links = Vec::new();
         let extension = known_extension(file.path());
         let _ = robots::each(&tree, format, extension, products, |node, body| {
             let of_body = holder(node, format).map(|body| inertials(body, format));
             let of_body = of_body.unwrap_or_default();
-            let repeated = of_body.first().is_some_and(|first| *first != node);
-            let name = if repeated { named(&body).to_owned() } else { names.next(named(&body)) };
+            let first = of_body.first().filter(|first| **first != node);
+            let repeated = first.is_some();
+            let for_gazebo = format == Format::Urdf && is_in_gazebo(node);
+            let own = named(body.name());
+            // What stands beside the inertia of a link takes no name from another link.
+            let name = match first {
+                _ if for_gazebo => own.to_owned(),
+                Some(first) => firsts.get(&first.place().start).map_or(own, |n| n).to_owned(),
+                None => names.next(own),
+            };
+            if of_body.len() > 1 && !repeated {
+                firsts.insert(node.place().start, name.clone());
+            }
             let read = match body.reading() {
                 _ if of_body.len() > 1 && format == Format::Mjcf => Err(LinkProblem::Several),
                 _ if repeated => Err(LinkProblem::Second),
-                _ if format == Format::Urdf && is_in_gazebo(node) => Err(LinkProblem::Gazebo),
+                _ if for_gazebo => Err(LinkProblem::Gazebo),
                 None => Err(body.inertia().err().map_or(LinkProblem::Gazebo, Into::into)),
                 Some(reading) => frame::of(node, format, &angles).and_then(|frame| {
                     let matrix = InertiaMatrix::new(reading.matrix)
@@ -256,16 +290,7 @@ impl RobotFile {
         });
         let overridden = (format == Format::Mjcf).then(|| compiler::overridden(&tree)).flatten();
         let doubts = compiler::doubts(&tree, format, file.gaps());
-        let element = if format == Format::Mjcf { "body" } else { "link" };
-        let without = tree
-            .all(element)
-            .filter(|link| {
-                let computed =
-                    |one: &Node<'_, '_>| format == Format::Sdf && robots::is_computed(*one);
-                is_body(*link, format) && inertials(*link, format).iter().all(computed)
-            })
-            .filter_map(|link| link.attribute("name").map(str::to_owned))
-            .collect();
+        let without = without.into_iter().map(|link| names.next(name_of(link))).collect();
         let references = references::relative(&tree);
         Ok(Self { links, without, references, overridden, doubts, file })
     }
@@ -288,7 +313,8 @@ impl RobotFile {
         &self.links
     }
 
-    /// Names of the links for which the file states no inertia.
+    /// Names of the links for which the file states no inertia, told apart from those of all others after these. In MJCF, an element of
+    /// which MuJoCo makes bodies (`<flexcomp>`, `<composite>`) is among them by its name.
     #[must_use]
     pub fn links_without_inertia(&self) -> &[String] {
         &self.without

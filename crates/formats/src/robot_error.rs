@@ -10,7 +10,7 @@ pub enum LinkProblem {
     #[error(transparent)]
     Body(#[from] FileBodyError),
     /// It stands beside the link's own, for Gazebo.
-    #[error("it stands in a block for Gazebo, beside the link's own")]
+    #[error("its <inertial> in a block for Gazebo is for Gazebo alone")]
     Gazebo,
     /// Another one of the link stands before it.
     #[error("it is a second <inertial> of its link, and simulators read the first alone")]
@@ -78,6 +78,12 @@ pub enum LinkProblem {
 }
 
 impl LinkProblem {
+    /// Whether it is that of an inertia beside the one that counts for the link, which may have numbers all the same.
+    #[must_use]
+    pub fn is_beside(&self) -> bool {
+        matches!(self, Self::Gazebo | Self::Second)
+    }
+
     /// Whether something is there and is not what it must be, which nobody means: what is missing, or said in another
     /// way, is no slip.
     #[must_use]

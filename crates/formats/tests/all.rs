@@ -7,6 +7,7 @@ mod encodings;
 mod headings;
 mod keys;
 mod mjcf_geoms;
+mod names;
 mod not_known;
 mod places;
 mod prefixes;

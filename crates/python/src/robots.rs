@@ -29,14 +29,19 @@ pub(crate) fn load_robot(py: Python<'_>, path: PathBuf) -> PyResult<(Vec<Link>, 
             }
             // A second element of a link is read by nobody.
             Err(problem) => {
-                let is_told = !matches!(problem, LinkProblem::Second);
-                (link.name().to_owned(), None, Some(problem.to_string()), is_told)
+                (link.name().to_owned(), None, Some(problem.to_string()), !problem.is_beside())
             }
         };
+        // Its link is not left out because of it.
+        let is_for_gazebo =
+            |link: &&RobotLink| link.numbers().is_err_and(|why| *why == LinkProblem::Gazebo);
+        let for_gazebo = robot.links().iter().filter(is_for_gazebo);
+        let for_gazebo = for_gazebo.map(|link| format!("{}: {}", link.name(), LinkProblem::Gazebo));
         let without = robot.links_without_inertia().iter();
         let why = || Some("no inertia in the file".to_owned());
         let without = without.map(|name| (name.clone(), None, why(), false));
-        let links = robot.links().iter().map(of).chain(without).collect();
+        let links = robot.links().iter().filter(|link| !is_for_gazebo(link));
+        let links = links.map(of).chain(without).collect();
         let overridden = robot.overridden_by().map(|told| {
             format!("its compiler says {told}: MuJoCo takes other numbers than those of its links")
         });
@@ -45,7 +50,7 @@ pub(crate) fn load_robot(py: Python<'_>, path: PathBuf) -> PyResult<(Vec<Link>, 
             robot.compiler_doubts().iter().filter(|doubt| **doubt != CompilerDoubt::Included);
         let doubts = doubts.map(ToString::to_string);
         let unread = robot.gaps().iter().filter_map(unread);
-        Ok((links, overridden.into_iter().chain(doubts).chain(unread).collect()))
+        Ok((links, overridden.into_iter().chain(doubts).chain(unread).chain(for_gazebo).collect()))
     })
 }
 

@@ -291,6 +291,33 @@ def test_robots_of_which_a_part_was_not_read_are_told(text: str, message: str, t
         gyradius.load(file, strict=True)
 
 
+@pytest.mark.parametrize("place", range(3))
+@pytest.mark.parametrize("block", ['<gazebo reference="a">{}</gazebo>', '<gazebo><link name="a">{}</link></gazebo>'])
+def test_an_inertia_for_gazebo_leaves_its_link_what_it_is(block: str, place: int, tmp_path: Path) -> None:
+    six = '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+    parts = [f'<link name="{name}"><inertial><mass value="2"/>{six}</inertial></link>' for name in "ab"]
+    parts.insert(place, block.format("<inertial><mass>3</mass></inertial>"))
+    file = tmp_path / "a.urdf"
+    file.write_text(f'<robot name="r">{"".join(parts)}</robot>', encoding="utf-8")
+    with pytest.warns(RuntimeWarning) as told:
+        found = gyradius.load(file)
+    assert list(found) == ["a", "b"] and found["a"].mass_kg == 2
+    said = [str(one.message) for one in told]
+    assert len(said) == 1 and "a: its <inertial> in a block for Gazebo" in said[0] and "left out" not in said[0]
+    with pytest.raises(ValueError, match="for Gazebo"):
+        gyradius.load(file, strict=True)
+
+
+def test_bodies_without_a_name_and_an_inertia_are_missed(tmp_path: Path) -> None:
+    file = tmp_path / "a.xml"
+    inertial = '<inertial pos="0 0 0" mass="1" diaginertia="1 2 2.5"/>'
+    for more, name in [("<body/>", "unnamed"), ('<body name=""/>', "unnamed"), ('<flexcomp name="f"/>', "f"), ('<body name="a"/>', "a#2")]:
+        file.write_text(f'<mujoco><worldbody><body name="a">{inertial}{more}</body></worldbody></mujoco>', encoding="utf-8")
+        assert list(gyradius.load(file)) == ["a"]
+        with pytest.raises(ValueError, match=f"{name}: no inertia in the file"):
+            gyradius.load(file, strict=True)
+
+
 def test_links_that_are_left_out_are_told_of(tmp_path: Path) -> None:
     def link(name: str, mass: str, ixx: str = 'ixx="1"') -> str:
         return (

@@ -430,8 +430,8 @@ def load(path: str | os.PathLike[str], *, strict: bool = False) -> dict[str, Mas
     dict of str to MassProperties
         In the order of the file, in the frame of each link. As they are in the file: `is_realizable` says whether they belong
         to a body. A `RuntimeWarning` tells of macros that are not expanded and of files that are not followed, in which there may be more
-        links, and of words such as `settotalmass="5"` of MJCF with which a simulator takes other numbers; with `strict` it is an error.
-        `laws` makes the laws of all of them.
+        links, of inertias for Gazebo alone in a URDF file, and of words such as `settotalmass="5"` of MJCF with which a simulator takes other
+        numbers; with `strict` it is an error. `laws` makes the laws of all of them.
 
     Raises
     ------

@@ -108,22 +108,26 @@ impl<'a> RobotDraw<'a> {
         if last.is_none() {
             return Err(RobotDrawError::Draws { first: options.first, draws: options.draws });
         }
-        let names: Vec<&str> = robot.links().iter().map(RobotLink::name).collect();
-        let picked = pick::picked(&names, robot.links_without_inertia(), &options.links)?;
+        let beside = |link: &RobotLink| link.numbers().err().filter(|why| why.is_beside()).cloned();
+        let own = robot.links().iter().filter(|link| beside(link).is_none());
+        let names: Vec<&str> = own.map(RobotLink::name).collect();
+        let mut picked =
+            pick::picked(&names, robot.links_without_inertia(), &options.links)?.into_iter();
         let (mut links, mut left) = (Vec::new(), Vec::new());
         let (mut impossible, mut outside) = (Vec::new(), Vec::new());
         let (mut unreadable, mut beyond) = (Vec::new(), Vec::new());
         let named = !options.links.is_empty();
         for (index, link) in robot.links().iter().enumerate() {
             let name = link.name().to_owned();
+            // It is not what a name means.
+            if let Some(problem) = beside(link) {
+                left.push((name, problem.into()));
+                continue;
+            }
+            let is_picked = picked.next().unwrap_or_default();
             let numbers = match link.numbers() {
-                _ if !picked[index] => {
+                _ if !is_picked => {
                     left.push((name, LeftBecause::NotPicked));
-                    continue;
-                }
-                // Nobody reads it, whatever its name matches.
-                Err(LinkProblem::Second) => {
-                    left.push((name, LinkProblem::Second.into()));
                     continue;
                 }
                 // What was asked for by name, or is a slip, is not passed over.
