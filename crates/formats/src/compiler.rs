@@ -1,12 +1,12 @@
-//! What MuJoCo's compiler is told that changes the inertias of a file, or makes several bodies of one.
+//! What tells simulators to change the inertias of a file, or to make several bodies of one: MuJoCo's compiler above all.
 
 use std::fmt;
 
 use crate::{
-    Format, Gap, GapKind,
+    Format,
     body::shortened,
     frame::with_quaternions,
-    holder::is_body,
+    holder::{INERTIAL, is_body},
     xml::{Node, Tree},
 };
 
@@ -18,7 +18,7 @@ pub(crate) fn overridden(tree: &Tree<'_>) -> Option<String> {
     from_geometry.or_else(|| positive(tree, "settotalmass")).map(written)
 }
 
-/// Why MuJoCo may use other numbers than those that a file states for a link.
+/// Why MuJoCo, or Gazebo, may use other numbers than those that a file states for a link, or have several bodies of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum CompilerDoubt {
@@ -38,7 +38,8 @@ pub enum CompilerDoubt {
         /// The first of them, as it is called in the file.
         body: String,
     },
-    /// A body of an MJCF file is attached again by `<attach body="arm"/>`, which names no other file.
+    /// A body of an MJCF file is attached again by `<attach body="arm"/>`, or with the frame around it by `<attach frame="side"/>`,
+    /// which names no other file.
     Attached {
         /// The first of them, as it is called in the file.
         body: String,
@@ -58,8 +59,18 @@ pub enum CompilerDoubt {
     /// An MJCF file has `coordinate="global"`. MuJoCo no longer loads such a file, and took places and axes for those of the
     /// world before.
     Global,
-    /// The file includes others, whose compiler counts for this one too.
+    /// The file includes others by `<include>`, whose compiler counts for this one too.
     Included,
+    /// Links of an SDF file stand in `<population>`, of whose model Gazebo makes several.
+    Populated {
+        /// The first of them, as it is called in the file.
+        link: String,
+    },
+    /// The `<inertial>` of links of an SDF file has `<fluid_added_mass>`.
+    FluidAdded {
+        /// The first of them, as it is called in the file.
+        link: String,
+    },
 }
 
 impl fmt::Display for CompilerDoubt {
@@ -103,32 +114,38 @@ impl fmt::Display for CompilerDoubt {
                 "the files that this file includes are not read: MuJoCo does not use the masses and inertias as they are \
                  written if a <compiler> in one of them has inertiafromgeom=\"true\" or a positive settotalmass",
             ),
+            Self::Populated { link } => write!(
+                f,
+                "\"{link}\" stands in <population>: Gazebo makes several links of it, which all have the same numbers"
+            ),
+            Self::FluidAdded { link } => write!(
+                f,
+                "the <inertial> of \"{link}\" has <fluid_added_mass>, which is not read: Gazebo adds it to the mass and inertia of the \
+                 link, and in copies of the file it stays as it is"
+            ),
         }
     }
 }
 
-/// The doubts about a file of this format, of which these parts were not read.
-pub(crate) fn doubts(tree: &Tree<'_>, format: Format, gaps: &[Gap]) -> Vec<CompilerDoubt> {
+/// The doubts about a file of this format.
+pub(crate) fn doubts(tree: &Tree<'_>, format: Format) -> Vec<CompilerDoubt> {
     let bounds = ["boundmass", "boundinertia"].into_iter().filter_map(|name| positive(tree, name));
     let raised = bounds.map(|found| CompilerDoubt::Raised { told: written(found) });
     match format {
         Format::Mjcf => {
-            let includes = gaps.iter().any(|gap| gap.kind() == GapKind::Included);
-            let mut replicated = tree.all("replicate").flat_map(Node::descendants);
-            let body = replicated.find(|node| node.name() == "body");
-            let body = body.map(|body| body.attribute("name").unwrap_or("unnamed"));
-            let replicated = body.map(|body| CompilerDoubt::Replicated { body: shortened(body) });
+            // The compiler of a `<model file="">` counts for that model alone.
+            let includes = tree.all("include").next().is_some();
+            let replicated = first_in(tree.all("replicate"), "body");
+            let replicated = replicated.map(|body| CompilerDoubt::Replicated { body });
             let attached = tree.all("attach").filter(|node| node.attribute("model").is_none());
-            let attached = attached.filter_map(|node| node.attribute("body")).take(1);
-            let attached = attached.map(|body| CompilerDoubt::Attached { body: shortened(body) });
-            let unplaced = tree.all("inertial").filter(|node| {
+            let attached = attached.filter_map(|node| attached_by(node, tree)).take(1);
+            let attached = attached.map(|body| CompilerDoubt::Attached { body });
+            let unplaced = tree.all(INERTIAL).filter(|node| {
                 node.parent().is_some_and(|body| is_body(body, format))
                     && node.attribute("pos").is_none_or(|pos| pos.trim().is_empty())
             });
-            let unplaced = unplaced.take(1).filter_map(Node::parent).map(|body| {
-                let body = body.attribute("name").unwrap_or("unnamed");
-                CompilerDoubt::Unplaced { body: shortened(body) }
-            });
+            let unplaced = unplaced.take(1).filter_map(Node::parent);
+            let unplaced = unplaced.map(|body| CompilerDoubt::Unplaced { body: called(body) });
             let global = said(tree, "coordinate").filter(|(_, told)| *told == "global");
             let framed = framed(tree).map(|told| CompilerDoubt::Framed { told });
             let all = raised.chain(replicated).chain(attached).chain(unplaced).chain(framed);
@@ -137,12 +154,39 @@ pub(crate) fn doubts(tree: &Tree<'_>, format: Format, gaps: &[Gap]) -> Vec<Compi
         }
         Format::Urdf => {
             let of_urdf = overridden(tree).map(|told| CompilerDoubt::OfUrdf { told });
-            let mut origins = tree.all("inertial").filter_map(|inertial| inertial.child("origin"));
+            let mut origins = tree.all(INERTIAL).filter_map(|inertial| inertial.child("origin"));
             let turned = origins.any(is_turned).then_some(CompilerDoubt::QuaternionOfUrdf);
             of_urdf.into_iter().chain(raised).chain(turned).collect()
         }
-        Format::Sdf | Format::Csv | Format::Toml | Format::Json => Vec::new(),
+        Format::Sdf => {
+            let populated = first_in(tree.all("population"), "link");
+            let populated = populated.map(|link| CompilerDoubt::Populated { link });
+            let added = tree.all("fluid_added_mass").filter_map(Node::parent);
+            let links = added.filter(|node| node.name() == INERTIAL).filter_map(Node::parent);
+            let mut links = links.filter(|link| is_body(*link, format));
+            let added = links.next().map(|link| CompilerDoubt::FluidAdded { link: called(link) });
+            populated.into_iter().chain(added).collect()
+        }
+        Format::Csv | Format::Toml | Format::Json => Vec::new(),
     }
+}
+
+/// What a link or a body is called in a message.
+fn called(body: Node<'_, '_>) -> String {
+    shortened(body.attribute("name").unwrap_or("unnamed"))
+}
+
+/// What the first element of a name is called that stands in one of some.
+fn first_in<'t, 'a: 't>(around: impl Iterator<Item = Node<'t, 'a>>, name: &str) -> Option<String> {
+    around.flat_map(Node::descendants).find(|node| node.name() == name).map(called)
+}
+
+/// The body that an element attaches again, or the first one in the frame that it attaches: without one, MuJoCo makes none.
+fn attached_by(attach: Node<'_, '_>, tree: &Tree<'_>) -> Option<String> {
+    let frame = attach.attribute("frame");
+    let is_it = |node: &Node<'_, '_>| frame.is_some() && node.attribute("name") == frame;
+    let in_frame = || first_in(tree.all("frame").filter(is_it), "body");
+    attach.attribute("body").map(shortened).or_else(in_frame)
 }
 
 /// Whether a `quat_xyzw` of URDF counts and says more than no rotation.

@@ -289,7 +289,7 @@ impl RobotFile {
             links.push(RobotLink { name, line: body.line(), read, geometry, defaults });
         });
         let overridden = (format == Format::Mjcf).then(|| compiler::overridden(&tree)).flatten();
-        let doubts = compiler::doubts(&tree, format, file.gaps());
+        let doubts = compiler::doubts(&tree, format);
         let without = without.into_iter().map(|link| names.next(name_of(link))).collect();
         let references = references::relative(&tree);
         Ok(Self { links, without, references, overridden, doubts, file })
@@ -351,7 +351,7 @@ impl RobotFile {
         self.overridden.as_deref()
     }
 
-    /// Why MuJoCo may use other numbers than those of the links, though nothing is known to override all of them.
+    /// Why a simulator may use other numbers than those of the links, though nothing is known to override all of them.
     #[must_use]
     pub fn compiler_doubts(&self) -> &[CompilerDoubt] {
         &self.doubts

@@ -1,6 +1,7 @@
 //! The tests of the crate from outside, in one program, which is linked once.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+mod doubts;
 mod dressings;
 mod edges;
 mod encodings;

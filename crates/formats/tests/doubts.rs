@@ -1,0 +1,126 @@
+//! What a simulator makes of a file beside its links: elements that make several bodies of one.
+
+use gyradius_formats::{CompilerDoubt, RobotFile};
+use proptest::{prelude::*, sample::select};
+use std::path::Path;
+
+fn doubts(name: &str, text: &str) -> Vec<CompilerDoubt> {
+    let robot = RobotFile::parse(Path::new(name), text.as_bytes().to_vec()).unwrap();
+    robot.compiler_doubts().to_vec()
+}
+
+/// A body or a frame of an MJCF file, and what stands in it.
+#[derive(Clone, Debug)]
+struct Part {
+    is_body: bool,
+    /// Names are given to each by its place, so that all differ.
+    is_named: bool,
+    inside: Vec<Part>,
+}
+
+fn part() -> impl Strategy<Value = Part> {
+    let leaf = any::<[bool; 2]>().prop_map(|[is_body, is_named]| Part {
+        is_body,
+        is_named,
+        inside: Vec::new(),
+    });
+    leaf.prop_recursive(4, 12, 3, |inner| {
+        (any::<[bool; 2]>(), prop::collection::vec(inner, 0..3))
+            .prop_map(|([is_body, is_named], inside)| Part { is_body, is_named, inside })
+    })
+}
+
+/// The text of parts, and of each its name, whether it is a body, and the first body in it.
+fn written(
+    parts: &[Part],
+    all: &mut Vec<(Option<String>, bool, Option<String>)>,
+) -> (String, Option<String>) {
+    let (mut text, mut first) = (String::new(), None);
+    for part in parts {
+        let place = all.len();
+        let name = part.is_named.then(|| format!("n{place}"));
+        all.push((name.clone(), part.is_body, None));
+        let (inside, of_inside) = written(&part.inside, all);
+        all[place].2.clone_from(&of_inside);
+        let named = name.as_ref().map_or(String::new(), |name| format!(" name='{name}'"));
+        let (element, own) = if part.is_body {
+            ("body", "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>")
+        } else {
+            ("frame", "")
+        };
+        text += &format!("<{element}{named}>{own}{inside}</{element}>");
+        let of_part = if part.is_body {
+            Some(name.unwrap_or_else(|| "unnamed".to_owned()))
+        } else {
+            of_inside
+        };
+        first = first.or(of_part);
+    }
+    (text, first)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(600))]
+
+    /// MuJoCo 4.0.0 makes other bodies of those that are attached, by themselves or in a frame, and none of a frame without.
+    #[test]
+    fn what_is_attached_within_a_file_is_told(parts in prop::collection::vec(part(), 1..4), pick in any::<prop::sample::Index>()) {
+        let mut all = Vec::new();
+        let (text, _) = written(&parts, &mut all);
+        let (name, is_body, inside) = pick.get(&all);
+        let Some(name) = name else { return Ok(()) };
+        let key = if *is_body { "body" } else { "frame" };
+        let with = |more: &str| format!(
+            "<mujoco><worldbody>{text}<frame pos='3 0 0'><attach {key}='{name}' prefix='p'{more}/></frame></worldbody></mujoco>"
+        );
+        let attached = if *is_body { Some(name.clone()) } else { inside.clone() };
+        let expected: Vec<_> =
+            attached.map(|body| CompilerDoubt::Attached { body }).into_iter().collect();
+        prop_assert_eq!(doubts("r.xml", &with("")), expected);
+        // Of another file, it is none of these.
+        prop_assert_eq!(doubts("r.xml", &with(" model='m'")), []);
+    }
+
+    /// The compiler of an included file counts for all, as MuJoCo 4.0.0 shows with settotalmass, and that of another model
+    /// for that model alone.
+    #[test]
+    fn the_compiler_of_another_model_is_its_own(model in any::<bool>(), include in any::<bool>(), is_late in any::<bool>()) {
+        let model = if model { "<asset><model name='c' file='c.xml'/></asset>" } else { "" };
+        let included = if include { "<include file='c.xml'/>" } else { "" };
+        let body = "<worldbody><body name='a'><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/></body></worldbody>";
+        let text = if is_late { format!("{body}{model}{included}") } else { format!("{included}{model}{body}") };
+        let found = doubts("r.xml", &format!("<mujoco>{text}</mujoco>"));
+        prop_assert_eq!(found.contains(&CompilerDoubt::Included), include, "{:?}", found);
+        prop_assert_eq!(found.len(), usize::from(include));
+    }
+
+    /// In SDF, populations and added masses of a fluid.
+    #[test]
+    fn several_models_of_one_and_added_masses_are_told(
+        links in prop::collection::vec((any::<[bool; 3]>(), select(vec!["a", "b", "c"])), 1..6),
+    ) {
+        let mut text = String::new();
+        let (mut populated, mut added) = (None, None);
+        for ([in_population, has_fluid, in_plugin], name) in &links {
+            let fluid = "<fluid_added_mass><xx>3</xx></fluid_added_mass>";
+            // Among the settings of a plugin it is nobody's.
+            let more = match (has_fluid, in_plugin) {
+                (true, true) => format!("</inertial><plugin>{fluid}</plugin>"),
+                (true, false) => format!("{fluid}</inertial>"),
+                (false, _) => "</inertial>".to_owned(),
+            };
+            let model = format!("<model name='m'><link name='{name}'><inertial><mass>2</mass>{more}</link></model>");
+            text += &if *in_population {
+                format!("<population name='p'><model_count>4</model_count>{model}</population>")
+            } else {
+                model
+            };
+            populated = populated.or(in_population.then_some(*name));
+            added = added.or((*has_fluid && !in_plugin).then_some(*name));
+        }
+        let populated = populated.map(|link| CompilerDoubt::Populated { link: link.to_owned() });
+        let added = added.map(|link| CompilerDoubt::FluidAdded { link: link.to_owned() });
+        let expected: Vec<_> = populated.into_iter().chain(added).collect();
+        prop_assert_eq!(doubts("r.sdf", &format!("<sdf version='1.11'><world name='w'>{text}</world></sdf>")), expected);
+    }
+}
