@@ -161,8 +161,15 @@ pub(crate) fn with_quaternions(node: Node<'_, '_>) -> Result<(), LinkProblem> {
     }
 }
 
+/// That no macro may give what says a frame: the element that does, if there is one, or another child in its place.
+fn without_macros(node: Node<'_, '_>, said: Option<Node<'_, '_>>) -> Result<(), LinkProblem> {
+    let is_open = said.unwrap_or(node).descendants().any(Node::is_macro);
+    if is_open { Err(LinkProblem::Macro) } else { Ok(()) }
+}
+
 fn urdf(node: Node<'_, '_>) -> Result<Frame, LinkProblem> {
     let origin = node.only_child("origin")?;
+    without_macros(node, origin)?;
     let numbers = |name| origin.and_then(|origin| origin.numbers(name, 3)).transpose();
     let (xyz, rpy) = (numbers("xyz")?, numbers("rpy")?);
     let quaternion = origin.and_then(|origin| origin.numbers("quat_xyzw", 4)).transpose()?;
@@ -210,6 +217,8 @@ fn around(node: Node<'_, '_>, angles: &Angles) -> Result<Option<Isometry3<f64>>,
 }
 
 fn mjcf(node: Node<'_, '_>, angles: &Angles) -> Result<Frame, LinkProblem> {
+    // It is said by attributes, which a macro in it may give.
+    without_macros(node, None)?;
     let around = around(node, angles)?;
     let position = node.numbers("pos", 3).transpose()?;
     let centre_spot = match &position {
@@ -257,6 +266,7 @@ fn sdf(node: Node<'_, '_>) -> Result<Frame, LinkProblem> {
         }
     }
     let origin = node.only_child("origin")?;
+    without_macros(node, pose.or(origin))?;
     let origin = origin.and_then(|origin| origin.numbers("pose", 6)).transpose()?;
     if origin.is_some() && !has_attributes(node) {
         return Err(FileBodyError::Attribute { field: "pose of origin" }.into());

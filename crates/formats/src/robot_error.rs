@@ -20,6 +20,11 @@ pub enum LinkProblem {
         "its body has more than one <inertial>: MuJoCo refuses the file or, where they stand in frames, takes the last"
     )]
     Several,
+    /// A macro of xacro may give its pose.
+    #[error(
+        "its pose may be given by a macro in it, which is not expanded: expand the file first, with `xacro file.xacro > file.urdf`"
+    )]
+    Macro,
     /// Its frame is given in another one than the link's.
     #[error("its pose is relative to \"{frame}\": it must be that in the link")]
     RelativeTo {
@@ -111,6 +116,7 @@ impl LinkProblem {
             | Self::OutOfRange => true,
             Self::Gazebo
             | Self::Second
+            | Self::Macro
             | Self::RelativeTo { .. }
             | Self::Angles
             | Self::NoPlace { .. } => false,

@@ -4,6 +4,7 @@ use crate::{
     FileBody, FileBodyError, FileProblem, Format, GapKind, MAX_BODIES, Products,
     body::{ENTRIES, NAMES, Number, Reading, shortened},
     error::Refusal,
+    frame::defaults,
     gap::Gaps,
     holder::{INERTIAL, is_in_gazebo, is_in_place},
     sdf_words::{has_attributes, truth},
@@ -107,12 +108,15 @@ pub(crate) fn each<'t, 'a>(
                 }
                 // What is missing is made by the macros in it, which are counted themselves.
                 Err(Trouble::Body(FileBodyError::Missing { .. }))
-                    if node.children().any(Node::is_macro) =>
+                    if node.descendants().any(Node::is_macro) =>
                 {
                     continue;
                 }
                 Err(Trouble::Body(error)) => Err(error),
             };
+            if leaves_to_macros(node, format) {
+                continue;
+            }
             if bodies == MAX_BODIES {
                 return Err(Refusal { line: Some(line), problem: FileProblem::TooManyBodies });
             }
@@ -149,6 +153,21 @@ fn read_one(
         Format::Urdf | Format::Csv | Format::Toml | Format::Json => urdf(inertial, products),
     };
     reading.map_err(Trouble::Body)
+}
+
+/// Whether macros in an inertia may give numbers of it for which a default stands otherwise.
+fn leaves_to_macros(inertial: Node<'_, '_>, format: Format) -> bool {
+    let has_macros = |node: Node<'_, '_>| node.descendants().any(Node::is_macro);
+    let of_sdf =
+        || !defaults(inertial).is_empty() || inertial.child("inertia").is_some_and(has_macros);
+    let moments = ["diaginertia", "fullinertia"];
+    has_macros(inertial)
+        && match format {
+            Format::Sdf => of_sdf(),
+            Format::Mjcf => moments.iter().all(|name| inertial.attribute(name).is_none()),
+            Format::Urdf => is_in_gazebo(inertial) && of_sdf(),
+            Format::Csv | Format::Toml | Format::Json => false,
+        }
 }
 
 /// Whether an element includes another file.

@@ -7,6 +7,7 @@ mod edges;
 mod encodings;
 mod headings;
 mod keys;
+mod macros;
 mod mjcf_geoms;
 mod names;
 mod not_known;
