@@ -8,7 +8,7 @@ use crate::body::shortened;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum GapKind {
-    /// Entities that the file declares itself: they may stand for bodies, and are not expanded.
+    /// Entities that the file declares itself: they may stand for bodies, numbers and names, and are not expanded.
     Entities,
     /// Macros of xacro, and inertias that are written with its expressions.
     Macros,
@@ -103,7 +103,7 @@ impl fmt::Display for Gap {
         match self.kind {
             GapKind::Entities => write!(
                 f,
-                "{} not expanded: what it stands for may hold bodies",
+                "{} not expanded: bodies, numbers or names may be missing here",
                 count("reference to an entity of the file is", "references to entities are")
             ),
             GapKind::Macros => write!(

@@ -35,6 +35,7 @@ mod data_item;
 mod data_keys;
 mod edit;
 mod encoding;
+mod entities;
 mod error;
 mod file;
 mod frame;

@@ -7,11 +7,12 @@ use quick_xml::{
     Reader,
     events::{BytesStart, Event},
 };
-use std::borrow::Cow;
+use std::{borrow::Cow, collections::BTreeSet};
 
 use crate::{
     FileBodyError, FileProblem, MAX_ATTRIBUTES, MAX_DEPTH,
     body::{Number, Place, shortened},
+    entities::{entities_in, is_character},
     error::Refusal,
     text::Text,
 };
@@ -57,7 +58,7 @@ pub(crate) struct Tree<'a> {
     /// Where references to entities stand that the file declares itself.
     entities: Vec<usize>,
     /// The prefixes that are declared for macros.
-    macros: Vec<&'a str>,
+    macros: BTreeSet<&'a str>,
 }
 
 /// The usual prefix of macros, and a part of what any other is declared as.
@@ -68,17 +69,12 @@ fn parts(name: &str) -> (&str, &str) {
     name.split_once(':').unwrap_or(("", name))
 }
 
-/// Whether a reference is one that every reader knows: a character by its number, or one of five.
-fn is_character(reference: &str) -> bool {
-    reference.starts_with('#') || matches!(reference, "lt" | "gt" | "amp" | "quot" | "apos")
-}
-
 impl<'a> Tree<'a> {
     pub(crate) fn parse(source: &'a Text) -> Result<Self, Refusal> {
         let text = source.as_str();
         let mut reader = Reader::from_str(text);
         let mut tree =
-            Self { source, elements: Vec::new(), entities: Vec::new(), macros: Vec::new() };
+            Self { source, elements: Vec::new(), entities: Vec::new(), macros: BTreeSet::new() };
         let mut open: Vec<usize> = Vec::new();
         loop {
             let before = usize::try_from(reader.buffer_position()).unwrap_or(text.len());
@@ -156,7 +152,10 @@ impl<'a> Tree<'a> {
                 return Err(source.refuse(before, FileProblem::TooManyAttributes));
             }
             let raw = self.own(&attribute.value);
+            // What is not expanded stands as it is, and is told.
             let value = quick_xml::escape::unescape(raw).unwrap_or(Cow::Borrowed(raw));
+            let at = source.offset_of(raw).unwrap_or(before);
+            self.entities.extend(std::iter::repeat_n(at, entities_in(raw)));
             let start = if value == raw { source.offset_of(raw) } else { None };
             let name = self.own(attribute.key.as_ref());
             let whole = source.offset_of(name).zip(source.offset_of(raw));
@@ -240,16 +239,13 @@ impl<'a> Tree<'a> {
         !self.macros.is_empty()
     }
 
-    fn macro_prefixes(&self) -> Vec<&'a str> {
+    fn macro_prefixes(&self) -> BTreeSet<&'a str> {
         let attributes = self.elements.iter().flat_map(|element| &element.attributes);
         let declared = attributes.filter_map(|attribute| {
             let prefix = attribute.name.strip_prefix("xmlns:")?;
             attribute.value.contains(MACROS).then_some(prefix)
         });
-        let mut prefixes: Vec<&str> = declared.collect();
-        prefixes.sort_unstable();
-        prefixes.dedup();
-        prefixes
+        declared.collect()
     }
 }
 
@@ -286,7 +282,7 @@ impl<'t, 'a> Node<'t, 'a> {
     pub(crate) fn is_macro(self) -> bool {
         let prefix = self.prefix();
         // Old versions knew their elements without a prefix, and no format has one of this name.
-        prefix == MACROS || self.tree.macros.contains(&prefix) || self.name() == "insert_block"
+        prefix == MACROS || self.tree.macros.contains(prefix) || self.name() == "insert_block"
     }
 
     /// The prefix of its name, empty if it has none.
@@ -363,10 +359,9 @@ impl<'t, 'a> Node<'t, 'a> {
     /// refers to; empty if there is none.
     pub(crate) fn name_above(self) -> String {
         let key = |node: &Self| match node.name() {
-            "link" | "body" | "macro" => Some("name"),
+            "link" | "body" => Some("name"),
             "gazebo" => Some("reference"),
-            _ if node.is_macro() && node.local_name() == "macro" => Some("name"),
-            _ => None,
+            _ => (node.local_name() == "macro").then_some("name"),
         };
         let found = self.ancestors().skip(1).find_map(|node| Some((node, key(&node)?)));
         found.and_then(|(node, key)| node.attribute(key)).unwrap_or_default().to_owned()

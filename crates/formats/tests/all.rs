@@ -5,6 +5,7 @@ mod doubts;
 mod dressings;
 mod edges;
 mod encodings;
+mod entities;
 mod headings;
 mod keys;
 mod macros;
