@@ -293,6 +293,10 @@ fn sdf(node: Node<'_, '_>) -> Result<Frame, LinkProblem> {
             LinkProblem::Word { field, value: shortened(word), allowed }
         })?,
     };
+    if in_degrees && is_quaternion {
+        let (first, second) = ("degrees=\"true\"", "rotation_format=\"quat_xyzw\"");
+        return Err(FileBodyError::Both { first, second }.into());
+    }
     let rotation = match values[..] {
         [_, _, _, roll, pitch, yaw] => {
             let unit = if in_degrees { 1_f64.to_radians() } else { 1.0 };

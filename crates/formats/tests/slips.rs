@@ -217,6 +217,31 @@ fn truth_values_of_sdf_are_read_in_letters_of_any_size_and_no_others_are() {
     }
 }
 
+/// Checked with the SDFormat of Drake 1.51.1, which refuses degrees of a quaternion, of an empty pose too.
+#[test]
+fn degrees_of_a_quaternion_are_refused() {
+    for (degrees, is_true) in
+        [("", false), (" degrees='true'", true), (" degrees='1'", true), (" degrees='0'", false)]
+    {
+        for (form, four, is_quaternion) in [
+            ("", "0 0 0", false),
+            (" rotation_format='euler_rpy'", "0 0 0", false),
+            (" rotation_format='quat_xyzw'", "0 0 0.6 0.8", true),
+        ] {
+            for inside in [format!("1 2 3 {four}"), String::new()] {
+                let pose = format!("><mass>2</mass><pose{degrees}{form}>{inside}</pose>");
+                let text = sdf(" version='1.9'", &pose);
+                let robot = RobotFile::parse(Path::new("a.sdf"), text.clone().into()).unwrap();
+                let found = robot.links()[0].numbers().err().map(ToString::to_string);
+                let expected = (is_true && is_quaternion).then(|| {
+                    "both degrees=\"true\" and rotation_format=\"quat_xyzw\" are given: there must be one of them".to_owned()
+                });
+                assert_eq!(found, expected, "{text}");
+            }
+        }
+    }
+}
+
 #[test]
 fn a_form_of_rotations_that_sdf_does_not_know_is_refused() {
     for (form, numbers) in [
