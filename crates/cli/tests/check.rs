@@ -402,6 +402,39 @@ fn what_is_passed_over_is_named_and_what_is_included_and_checked_is_not() {
     assert!(out.contains("scene.xml:2: 1 included file is not followed: parts/arm.xml"), "{out}");
 }
 
+/// Models are included by the names of their folders, from wherever Gazebo finds them.
+#[test]
+fn an_included_model_that_is_checked_is_not_passed_over() {
+    let model = |inside: &str| format!("<sdf version='1.9'><model name='m'>{inside}</model></sdf>");
+    let body = model("<link name='l'><inertial><mass>1</mass></inertial></link>");
+    for name in ["model.sdf", "other.sdf"] {
+        for (uri, leads_to) in [
+            ("model://base", "model.sdf"),
+            ("model://base/", "model.sdf"),
+            ("model://base/model.sdf", "model.sdf"),
+            ("model://base/other.sdf", "other.sdf"),
+            ("../base", "model.sdf"),
+            ("../base/other.sdf", "other.sdf"),
+            ("file://../base", "model.sdf"),
+            ("model://gone", ""),
+            ("https://example.org/base", ""),
+            ("", ""),
+        ] {
+            let shell = Shell::new();
+            shell.write(&format!("models/base/{name}"), &body);
+            let include = format!("<include><uri>{uri}</uri></include>");
+            shell.write("models/arm/model.sdf", model(&include));
+            let passed = |arguments: &[&str]| shell.check(arguments).1.contains("not followed");
+            // A folder has the file that stands for it, or none does.
+            assert_eq!(passed(&["models"]), leads_to != name, "{uri} {name}");
+            assert_eq!(passed(&[&format!("models/base/{name}"), "models/arm"]), leads_to != name);
+            assert!(
+                shell.json(&["models/arm/model.sdf"]).1["passed_over"][0]["reason"].is_string()
+            );
+        }
+    }
+}
+
 impl Shell {
     fn pipe(&self, input: &[u8], arguments: &[&str]) -> (i32, String, String) {
         let mut child = Command::new(env!("CARGO_BIN_EXE_gyradius"))

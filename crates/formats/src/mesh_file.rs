@@ -1,12 +1,8 @@
 //! The vertices of a mesh in an STL or OBJ file.
 
-use std::{
-    fs::File,
-    io::Read,
-    path::{Path, PathBuf},
-};
+use std::{fs::File, io::Read, path::Path};
 
-use crate::MAX_BYTES;
+use crate::{MAX_BYTES, located::located};
 
 /// Bytes before the triangles of a binary STL file: a title and their number.
 const HEAD: usize = 84;
@@ -16,7 +12,8 @@ const TRIANGLE: usize = 50;
 /// The vertices of the mesh that a robot file names, in the units of the file.
 pub(crate) fn vertices(uri: &str, robot: &Path) -> Result<Vec<[f64; 3]>, MeshFileError> {
     let fail = |why: String| MeshFileError { mesh: uri.to_owned(), why };
-    let path = found(uri, robot).ok_or_else(|| fail("there is no such file".to_owned()))?;
+    let path = located(uri, robot, Path::is_file)
+        .ok_or_else(|| fail("there is no such file".to_owned()))?;
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     if !matches!(extension.as_str(), "stl" | "obj") {
         return Err(fail("of meshes, STL and OBJ files are read".to_owned()));
@@ -50,30 +47,6 @@ pub(crate) fn vertices(uri: &str, robot: &Path) -> Result<Vec<[f64; 3]>, MeshFil
         return Err(fail("a vertex of it is not finite".to_owned()));
     }
     Ok(vertices)
-}
-
-/// Where a file is: from the folder of the robot, or in the package of that name around it.
-fn found(uri: &str, robot: &Path) -> Option<PathBuf> {
-    let folder = robot.parent().unwrap_or(Path::new(""));
-    if let Some(path) = uri.strip_prefix("file://") {
-        return Some(folder.join(path)).filter(|path| path.is_file());
-    }
-    let Some((_, inside)) = uri.split_once("://") else {
-        return Some(folder.join(uri)).filter(|path| path.is_file());
-    };
-    let (package, rest) = inside.split_once('/')?;
-    let whole =
-        std::fs::canonicalize(if folder.as_os_str().is_empty() { Path::new(".") } else { folder });
-    let candidates: Vec<PathBuf> = whole
-        .ok()?
-        .ancestors()
-        .flat_map(|above| {
-            let own =
-                above.file_name().is_some_and(|name| name == package).then(|| above.join(rest));
-            own.into_iter().chain([above.join(inside)])
-        })
-        .collect();
-    candidates.into_iter().find(|path| path.is_file())
 }
 
 /// The corners of the triangles of a binary STL file, if its length is that of one, or by less than a triangle more.

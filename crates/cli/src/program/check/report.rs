@@ -2,7 +2,8 @@
 
 use gyradius_formats::{
     Bearing, BodyJudgement, Change, FileBody, FileError, FileProblem, Format, Found, Gap,
-    InertiaFile, Note, RealizabilityReport, Remedy, RepairError, copy_path, judge, write_copy_of,
+    InertiaFile, Note, RealizabilityReport, Remedy, RepairError, copy_path, included_file, judge,
+    write_copy_of,
 };
 use std::{
     cmp::Ordering,
@@ -217,10 +218,10 @@ impl Report {
     fn add_gaps(&mut self, file: &InertiaFile, originals: &[PathBuf]) {
         let path = || file.path().to_owned();
         // Included files that are checked themselves are not passed over.
-        let folder = file.path().parent().unwrap_or(Path::new(""));
         let is_checked = |name: &String| {
-            fs::canonicalize(folder.join(name))
-                .is_ok_and(|path| originals.binary_search(&path).is_ok())
+            let found =
+                included_file(name, file.path()).and_then(|path| fs::canonicalize(path).ok());
+            found.is_some_and(|path| originals.binary_search(&path).is_ok())
         };
         let is_open =
             |gap: &&Gap| gap.files().len() < gap.count() || !gap.files().iter().all(is_checked);
