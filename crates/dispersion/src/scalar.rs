@@ -3,7 +3,7 @@
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::{normal, truncated_normal::MAX_DISTANCE};
+use crate::truncated_normal::MAX_DISTANCE;
 use form::Declaration;
 use laws::DECLARATIONS;
 pub(crate) use laws::SAFE_DEVIATION;
@@ -169,16 +169,10 @@ impl ScalarLaw {
         if x.is_nan() { x } else { self.0.cdf(x) }
     }
 
-    /// The probability of a value above x: 1 − F(x), without cancellation far out.
+    /// The probability of a value above x: 1 − F(x), without cancellation where it is small.
     #[must_use]
     pub fn share_above(&self, x: f64) -> f64 {
-        let below = self.cdf(x);
-        // Nearer than that the difference has thirteen digits, and a score may have to be searched for.
-        if !(below > 0.999) || self.ln_density(x).is_none() {
-            return if x.is_nan() { x } else { self.0.share_above(x) };
-        }
-        let z = self.score(x);
-        if x >= self.at_score(f64::INFINITY) || z >= END { 0.0 } else { normal::above(z) }
+        if x.is_nan() { x } else { self.0.share_above(x) }
     }
 
     /// The smallest value that is not exceeded with a probability of at least p: the inverse of [`cdf`](Self::cdf), with the bounds of

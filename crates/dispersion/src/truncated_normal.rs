@@ -160,11 +160,36 @@ impl TruncatedNormal {
         if self.deviation == 0.0 {
             return f64::from(u8::from(x >= self.anchor));
         }
+        self.share_beside(x, x - self.bounds[0], self.sign < 0.0)
+    }
+
+    /// The probability of a value above x.
+    pub(crate) fn share_above(&self, x: f64) -> f64 {
+        if self.deviation == 0.0 {
+            return f64::from(u8::from(x < self.anchor));
+        }
+        self.share_beside(x, self.bounds[1] - x, self.sign > 0.0)
+    }
+
+    /// The share between x and the bound from which it is so far: that of the largest v, or of the smallest.
+    fn share_beside(&self, x: f64, distance: f64, is_largest: bool) -> f64 {
         let [low, high] = self.bounds;
         let [from, to] = self.ends;
-        let v = (self.sign * (x.clamp(low, high) - self.anchor) / self.deviation).clamp(from, to);
-        let below = if self.sign > 0.0 { self.mass(from, v) } else { self.mass(v, to) };
-        (below / self.whole).min(1.0)
+        let (end, inwards) = if is_largest { (to, -1.0) } else { (from, 1.0) };
+        let distance = distance.max(0.0) / self.deviation;
+        let mass = if distance <= NARROW.min(to - from) && end.abs() < END {
+            // As a difference of two v, a small distance would lose its digits.
+            let mut sum = 0.0;
+            panel(0.0, distance, |u, weight| {
+                sum += weight * libm::exp(self.ln_density(end + inwards * u));
+            });
+            sum
+        } else {
+            let v =
+                (self.sign * (x.clamp(low, high) - self.anchor) / self.deviation).clamp(from, to);
+            if is_largest { self.mass(v, to) } else { self.mass(from, v) }
+        };
+        (mass / self.whole).min(1.0)
     }
 
     /// The value below which a share Φ(z) of the window lies: bisection, by Newton's iteration where

@@ -40,10 +40,8 @@ pub(super) trait Law: Sized {
     /// The probability of a value of at most x.
     fn cdf(&self, x: f64) -> f64;
 
-    /// The probability of a value above x, as good as the one of those up to it is.
-    fn share_above(&self, x: f64) -> f64 {
-        1.0 - self.cdf(x)
-    }
+    /// The probability of a value above x, which keeps its digits where it is small.
+    fn share_above(&self, x: f64) -> f64;
 
     /// The smallest x with a probability of at least p, which is one, of a value of at most x.
     fn quantile(&self, p: f64) -> f64 {
@@ -190,6 +188,14 @@ impl Law for Normal {
         }
     }
 
+    fn share_above(&self, x: f64) -> f64 {
+        if self.deviation == 0.0 {
+            1.0 - step(self.mean, x)
+        } else {
+            above((x - self.mean) / self.deviation)
+        }
+    }
+
     fn ln_density(&self, x: f64) -> Option<f64> {
         (self.deviation > 0.0)
             .then(|| ln_normal((x - self.mean) / self.deviation) - self.ln_deviation)
@@ -266,6 +272,14 @@ impl Law for Uniform {
             step(self.low, x)
         } else {
             ((x - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
+        }
+    }
+
+    fn share_above(&self, x: f64) -> f64 {
+        if self.low == self.high {
+            1.0 - step(self.low, x)
+        } else {
+            ((self.high - x) / (self.high - self.low)).clamp(0.0, 1.0)
         }
     }
 
@@ -365,6 +379,10 @@ impl Law for TruncatedNormal {
 
     fn cdf(&self, x: f64) -> f64 {
         self.0.window.cdf(x)
+    }
+
+    fn share_above(&self, x: f64) -> f64 {
+        self.0.window.share_above(x)
     }
 
     fn ln_density(&self, x: f64) -> Option<f64> {
@@ -483,6 +501,20 @@ impl ScalarLaw {
     }
 }
 
+impl Lognormal {
+    /// The score of a value, of a law with a deviation; of one that is not positive, −∞.
+    fn score(&self, x: f64) -> f64 {
+        let change = (x - self.mean) / self.mean;
+        // Near the mean nothing cancels, and far from it nothing overflows.
+        let ln_ratio = if change.abs() < 0.5 {
+            libm::log1p(change)
+        } else {
+            libm::log(x.max(0.0)) - libm::log(self.mean)
+        };
+        ln_ratio / self.log_deviation + 0.5 * self.log_deviation
+    }
+}
+
 impl Law for Lognormal {
     const NAME: &'static str = "lognormal";
     const KEYS: &'static [Key] = &[SIGMA, SIGMAS, VARIANCE, MEAN];
@@ -502,14 +534,11 @@ impl Law for Lognormal {
     }
 
     fn cdf(&self, x: f64) -> f64 {
-        let s = self.log_deviation;
-        if s == 0.0 {
-            step(self.mean, x)
-        } else if x > 0.0 {
-            below(libm::log(x / self.mean) / s + 0.5 * s)
-        } else {
-            0.0
-        }
+        if self.log_deviation == 0.0 { step(self.mean, x) } else { below(self.score(x)) }
+    }
+
+    fn share_above(&self, x: f64) -> f64 {
+        if self.log_deviation == 0.0 { 1.0 - step(self.mean, x) } else { above(self.score(x)) }
     }
 
     fn ln_density(&self, x: f64) -> Option<f64> {
@@ -520,11 +549,7 @@ impl Law for Lognormal {
         if !(x > 0.0) {
             return Some(f64::NEG_INFINITY);
         }
-        let (change, ln_x) = ((x - self.mean) / self.mean, libm::log(x));
-        // Near the mean nothing cancels, and far from it nothing overflows.
-        let near = change.abs() < 0.5;
-        let ln_ratio = if near { libm::log1p(change) } else { ln_x - libm::log(self.mean) };
-        Some(ln_normal(ln_ratio / s + 0.5 * s) - libm::log(s) - ln_x)
+        Some(ln_normal(self.score(x)) - libm::log(s) - libm::log(x))
     }
 
     fn mean(&self) -> f64 {
@@ -611,6 +636,27 @@ impl Triangular {
         let part = (share * width - near) / far;
         near + far * (part / (1.0 + (1.0 - part).sqrt()))
     }
+
+    /// The share between an end and a value: from how far it lies from that end, beyond the mode and from the other end,
+    /// and how far the mode lies from that end and from the other.
+    fn share_from_end(&self, [from, beyond, rest]: [f64; 3], [near, far]: [f64; 2]) -> f64 {
+        let width = self.high - self.low;
+        if rest <= 0.0 {
+            1.0
+        } else if from <= 0.0 {
+            0.0
+        } else if beyond <= 0.0 {
+            from / width * (from / near)
+        } else {
+            let other = rest / width * (rest / far);
+            // The share is small beyond the mode where that lies near the end.
+            if other > 1.0 - SMALL {
+                near / width + beyond / width * (2.0 - beyond / far)
+            } else {
+                1.0 - other
+            }
+        }
+    }
 }
 
 impl Law for Triangular {
@@ -642,21 +688,18 @@ impl Law for Triangular {
 
     fn cdf(&self, x: f64) -> f64 {
         let Self { low, mode, high } = *self;
-        if x >= high {
-            1.0
-        } else if x <= low {
-            0.0
-        } else if x <= mode {
-            (x - low) / (high - low) * ((x - low) / (mode - low))
-        } else {
-            let above = (high - x) / (high - low) * ((high - x) / (high - mode));
-            if above > 1.0 - SMALL {
-                let (width, part) = (high - low, (x - mode) / (high - mode));
-                (mode - low) / width + (x - mode) / width * (2.0 - part)
-            } else {
-                1.0 - above
-            }
+        if low == high {
+            return step(low, x);
         }
+        self.share_from_end([x - low, x - mode, high - x], [mode - low, high - mode])
+    }
+
+    fn share_above(&self, x: f64) -> f64 {
+        let Self { low, mode, high } = *self;
+        if low == high {
+            return 1.0 - step(low, x);
+        }
+        self.share_from_end([high - x, mode - x, x - low], [high - mode, mode - low])
     }
 
     fn ln_density(&self, x: f64) -> Option<f64> {
@@ -785,6 +828,17 @@ impl Law for Beta {
         }
     }
 
+    fn share_above(&self, x: f64) -> f64 {
+        if x >= self.high {
+            0.0
+        } else if x <= self.low {
+            1.0
+        } else {
+            let width = self.high - self.low;
+            self.below.swapped().share((self.high - x) / width, (x - self.low) / width)
+        }
+    }
+
     fn ln_density(&self, x: f64) -> Option<f64> {
         let width = self.high - self.low;
         if width == 0.0 {
@@ -897,6 +951,14 @@ impl Law for Weibull {
             step(self.low, x)
         } else {
             -libm::expm1(-libm::pow((x - self.low).max(0.0) / self.scale, self.shape))
+        }
+    }
+
+    fn share_above(&self, x: f64) -> f64 {
+        if self.scale == 0.0 {
+            1.0 - step(self.low, x)
+        } else {
+            libm::exp(-libm::pow((x - self.low).max(0.0) / self.scale, self.shape))
         }
     }
 

@@ -70,6 +70,65 @@ fn triangles_keep_their_lower_tail() {
     }
 }
 
+/// Near a bound, the share beyond a value is the density there times the distance over the power with which shares rise
+/// from that bound, wherever the law lies: on both sides.
+#[test]
+fn shares_near_the_bounds_keep_their_digits() {
+    let mut rng = ChaCha8Rng::seed_from_u64(174);
+    for case in 0..4000 {
+        let place = [0.0, 1.0, 1e6][case % 3] * rng.random_range(-1.0..1.0);
+        let width = 10_f64.powf(rng.random_range(-3.0..3.0));
+        let (low, high) = (place - 0.4 * width, place + 0.6 * width);
+        let shapes = [(); 2].map(|()| rng.random_range(0.2..5.0));
+        let sigma = width * 10_f64.powf(rng.random_range(-0.5..2.0));
+        let mean = place + rng.random_range(-2.0..2.0) * sigma;
+        let [below_mode, above_mode] = if case % 2 == 0 { [2.0, 2.0] } else { [2.0, 1.0] };
+        let mode = if case % 2 == 0 { place } else { high };
+        for (law, powers) in [
+            (ScalarLaw::uniform(low, high), [1.0; 2]),
+            (ScalarLaw::triangular(low, mode, high), [below_mode, above_mode]),
+            (ScalarLaw::beta(low, high, shapes[0], shapes[1]), shapes),
+            (ScalarLaw::truncated_normal(mean, sigma, low, high), [1.0; 2]),
+        ] {
+            let law = law.unwrap();
+            let part = 10_f64.powf(rng.random_range(-9.0..-5.0));
+            let check = |share: f64, x: f64, distance: f64, power: f64| {
+                if distance > 0.0 {
+                    let expected = law.ln_density(x).unwrap().exp() * distance / power;
+                    let off = (share / expected - 1.0).abs();
+                    assert!(
+                        off < 50.0 * distance / width + 1e-9,
+                        "{law:?} {x:?}: {share:e} {expected:e}"
+                    );
+                }
+            };
+            let (x, y) = (low + part * width, high - part * width);
+            check(law.cdf(x), x, x - low, powers[0]);
+            check(law.share_above(y), y, high - y, powers[1]);
+        }
+    }
+}
+
+/// A narrow lognormal law is normal but for a share of its width, however narrow it is.
+#[test]
+fn narrow_lognormal_laws_are_normal() {
+    let mut rng = ChaCha8Rng::seed_from_u64(509);
+    for _ in 0..4000 {
+        let mean = 10_f64.powf(rng.random_range(-30.0..30.0));
+        let sigma = mean * 10_f64.powf(rng.random_range(-15.0..-4.0));
+        let [law, normal] =
+            [ScalarLaw::lognormal, ScalarLaw::normal].map(|law| law(mean, sigma).unwrap());
+        let x = mean + sigma * rng.random_range(-6.0..6.0);
+        for [found, expected] in
+            [[law.cdf(x), normal.cdf(x)], [law.share_above(x), normal.share_above(x)]]
+        {
+            // The slope of ln Φ at six deviations, and the change of the score there.
+            let room = 6.2 * 18.0 * sigma / mean + 1e-13;
+            assert!((found / expected - 1.0).abs() < room, "{law:?} {x:?}: {found:e} {expected:e}");
+        }
+    }
+}
+
 /// Deviations and scores are in proportion to the scale, though squares be no numbers.
 #[test]
 fn the_smallest_scales_are_scales() {
