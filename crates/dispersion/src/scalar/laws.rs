@@ -1165,7 +1165,8 @@ impl Law for Bernoulli {
     }
 
     fn at_score(&self, z: f64) -> f64 {
-        f64::from(u8::from(below(-z) < self.probability))
+        // What is certain is so at every score, though the share is rounded to one there.
+        f64::from(u8::from(self.probability == 1.0 || below(-z) < self.probability))
     }
 
     fn cdf(&self, x: f64) -> f64 {
@@ -1183,7 +1184,8 @@ impl Law for Bernoulli {
     }
 
     fn quantile(&self, p: f64) -> f64 {
-        let one = p > 1.0 - self.probability || (p == 1.0 && self.probability > 0.0);
+        let certain = self.probability == 1.0 || (p == 1.0 && self.probability > 0.0);
+        let one = certain || p > 1.0 - self.probability;
         f64::from(u8::from(one))
     }
 

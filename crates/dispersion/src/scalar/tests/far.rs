@@ -41,6 +41,8 @@ fn rare_events_keep_their_shares() {
         let law = ScalarLaw::bernoulli(p).unwrap();
         assert_eq!([-0.1, 0.0, 0.5, 1.0].map(|x| law.share_above(x)), [1.0, p, p, 0.0]);
         assert_eq!([law.quantile(1.0), law.at_score(INF)], [1.0; 2]);
+        let least = f64::from(u8::from(p == 1.0));
+        assert_eq!([law.quantile(0.0), law.at_score(-30.0), law.at_score(-INF)], [least; 3]);
     }
     assert_eq!(ScalarLaw::bernoulli(0.0).unwrap().quantile(1.0), 0.0);
     let law = ScalarLaw::samples(&(0..100_000).map(f64::from).collect::<Vec<_>>()).unwrap();
