@@ -33,7 +33,7 @@ macro_rules! parameters {
             /// value left in the map.
             ///
             /// # Errors
-            /// The value is of another type than the key's.
+            /// The value is of another type than the key's, or the key has been read before.
             #[cfg(feature = "serde")]
             pub fn read<'de, M: serde::de::MapAccess<'de>>(
                 &mut self,
@@ -41,10 +41,15 @@ macro_rules! parameters {
                 map: &mut M,
             ) -> Result<(), M::Error> {
                 match key {
-                    $(stringify!($key) => self.$key = Some(map.next_value()?),)*
-                    _ => {}
+                    $(stringify!($key) if self.$key.is_some() => {
+                        Err(<M::Error as serde::de::Error>::duplicate_field(stringify!($key)))
+                    })*
+                    $(stringify!($key) => {
+                        self.$key = Some(map.next_value()?);
+                        Ok(())
+                    })*
+                    _ => Ok(()),
                 }
-                Ok(())
             }
 
             /// Writes what is given into a map, with something before each key.

@@ -361,10 +361,12 @@ mod file {
         }
 
         fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<ScalarLawForm, A::Error> {
-            let (mut law, mut values) = (&DECLARATIONS[0], Vec::new());
+            let (mut law, mut values) = (None, Vec::new());
             while let Some(name) = map.next_key::<String>()? {
                 if name == "law" {
-                    law = map.next_value()?;
+                    if law.replace(map.next_value()?).is_some() {
+                        return Err(A::Error::duplicate_field("law"));
+                    }
                     continue;
                 }
                 let Some(key) = keys().find(|key| key.name == name) else {
@@ -372,6 +374,9 @@ mod file {
                     let problem = format!("unknown field `{name}`, expected one of {all}");
                     return Err(A::Error::custom(problem));
                 };
+                if values.iter().any(|(name, _)| *name == key.name) {
+                    return Err(A::Error::duplicate_field(key.name));
+                }
                 let value = match key.of {
                     Of::Place | Of::Size | Of::Square | Of::Sigmas | Of::Number => {
                         Value::Number(map.next_value()?)
@@ -381,6 +386,7 @@ mod file {
                 };
                 values.push((key.name, value));
             }
+            let law: &Declaration = law.unwrap_or(&DECLARATIONS[0]);
             let at = |name: &str| law.keys.iter().position(|key| key.name == name);
             values.sort_by_key(|(name, _)| at(name));
             Ok(ScalarLawForm { law, values, bare: false })
@@ -415,6 +421,30 @@ mod file {
 #[cfg(all(test, feature = "serde"))]
 mod tests {
     use super::*;
+
+    /// A key that stands twice is refused, whichever it is and of whichever law, with other keys between or without.
+    #[test]
+    fn keys_stand_once() {
+        for (law, _) in crate::scalar::laws::examples() {
+            let serde_json::Value::Object(written) = serde_json::to_value(&law).unwrap() else {
+                unreachable!("a table")
+            };
+            let entry = |(key, value): (&String, &serde_json::Value)| format!("\"{key}\":{value}");
+            let all: Vec<String> = written.iter().map(entry).collect();
+            let read = |entries: &[String]| {
+                serde_json::from_str::<ScalarLaw>(&format!("{{{}}}", entries.join(",")))
+            };
+            assert_eq!(read(&all).unwrap(), law);
+            for (i, key) in written.keys().enumerate() {
+                for place in 0..=all.len() {
+                    let mut twice = all.clone();
+                    twice.insert(place, all[i].clone());
+                    let refused = read(&twice).unwrap_err().to_string();
+                    assert!(refused.contains(&format!("duplicate field `{key}`")), "{refused}");
+                }
+            }
+        }
+    }
 
     /// A covariance is named where a law could have one: of three components at once.
     #[test]
