@@ -141,7 +141,7 @@ impl StatedBody {
     /// The same with draws of which the matter can lie in a region.
     ///
     /// # Errors
-    /// Next to no draw is possible in the region.
+    /// The law has a region already, or next to no draw is possible in the region.
     pub fn inside(self, region: Region) -> Result<Self, StatementError> {
         let law = self.law.inside(region);
         let law = law.map_err(|error| StatementError::Law { problem: error.to_string() })?;

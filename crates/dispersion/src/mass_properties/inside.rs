@@ -21,11 +21,15 @@ pub(super) struct Inside {
 }
 
 impl Inside {
-    /// Of a law that gives these draws.
+    /// Of a law that gives these draws, which may be kept to no region yet.
     pub(super) fn new(
+        before: Option<&Self>,
         region: Region,
         mut draw: impl FnMut() -> MassProperties,
     ) -> Result<Self, RegionAcceptanceError> {
+        if before.is_some() {
+            return Err(RegionAcceptanceError::Second);
+        }
         let trials = if region.is_exact() { EXACT_TRIALS } else { REGION_TRIALS };
         let mut held = None;
         let mut possible = 0;
@@ -37,9 +41,9 @@ impl Inside {
             }
         }
         if f64::from(possible) < LEAST_SHARE * f64::from(trials) {
-            return Err(RegionAcceptanceError { possible, trials });
+            return Err(RegionAcceptanceError::Rare { possible, trials });
         }
-        let sums = held.ok_or(RegionAcceptanceError { possible, trials })?;
+        let sums = held.ok_or(RegionAcceptanceError::Rare { possible, trials })?;
         Ok(Self { region, possible, trials, sums: Box::new(sums) })
     }
 
@@ -88,15 +92,22 @@ fn about(body: &MassProperties) -> TenSums {
     TenSums::about(TenParameters::from(*body).values(), scale)
 }
 
-/// Next to no trial draw is possible in the region.
+/// Why draws are not kept to a region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "region: {possible} of {trials} trial draws were bodies that fit into it, and at least one in a thousand must be: each draw \
-     is tried again until it fits, which would take too long"
-)]
-pub struct RegionAcceptanceError {
-    /// How many were.
-    pub possible: u32,
-    /// Of how many.
-    pub trials: u32,
+#[non_exhaustive]
+pub enum RegionAcceptanceError {
+    /// Next to no trial draw is possible in the region.
+    #[error(
+        "region: {possible} of {trials} trial draws were bodies that fit into it, and at least one in a thousand must be: each draw \
+         is tried again until it fits, which would take too long"
+    )]
+    Rare {
+        /// How many were.
+        possible: u32,
+        /// Of how many.
+        trials: u32,
+    },
+    /// The draws are kept to another region already.
+    #[error("region: the draws are kept to another one already, and only one is allowed")]
+    Second,
 }

@@ -166,12 +166,11 @@ impl MassPropertiesLaw {
     /// fixed seed, 20,000 for an ellipsoid and 4,000 for a box or a hull.
     ///
     /// # Errors
-    /// Fewer than one in a thousand trial draws are possible in the region.
+    /// The law has a region already, or fewer than one in a thousand trial draws are possible in the region.
     pub fn inside(self, region: Region) -> Result<Self, MassPropertiesLawError> {
-        let open = Self { inside: None, ..self };
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(0);
-        let inside = Inside::new(region, || open.sample(&mut rng))?;
-        Ok(Self { inside: Some(inside), ..open })
+        let inside = Inside::new(self.inside.as_ref(), region, || self.sample(&mut rng))?;
+        Ok(Self { inside: Some(inside), ..self })
     }
 
     /// The region that holds the matter of every draw.
@@ -453,7 +452,7 @@ pub enum MassPropertiesLawError {
         /// How large, in SI units.
         value: f64,
     },
-    /// Next to no trial draw is possible in the region.
+    /// The region.
     #[error(transparent)]
     Region(#[from] RegionAcceptanceError),
     /// Most trial draws are no bodies.

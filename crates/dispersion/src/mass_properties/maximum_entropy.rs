@@ -95,12 +95,11 @@ impl MaximumEntropy {
     /// [`MassPropertiesLaw::inside`](super::MassPropertiesLaw::inside).
     ///
     /// # Errors
-    /// Fewer than one in a thousand trial draws are possible in the region.
+    /// The law has a region already, or fewer than one in a thousand trial draws are possible in the region.
     pub fn inside(self, region: Region) -> Result<Self, RegionAcceptanceError> {
-        let open = Self { inside: None, ..self };
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(SEED);
-        let inside = Inside::new(region, || open.sample(&mut rng))?;
-        Ok(Self { inside: Some(inside), ..open })
+        let inside = Inside::new(self.inside.as_ref(), region, || self.sample(&mut rng))?;
+        Ok(Self { inside: Some(inside), ..self })
     }
 
     /// The logarithm of the density with respect to dm d³c dI₁₁ dI₂₂ dI₃₃ dI₁₂ dI₁₃ dI₂₃. None where the mass centre or

@@ -34,7 +34,8 @@ fn rows(law: &dyn MassPropertiesModel, n: usize) -> Vec<TenParameters> {
 fn densities_have_the_integral_one() {
     let ellipsoid = Region::ellipsoid([0.4, 0.8, 0.3], [0.85, 1.0, 0.85]).unwrap();
     let entropy = MaximumEntropy::new(&body(), 0.15, [0.15, 0.2, 0.18], 0.25).unwrap();
-    let kept = entropy.clone().inside(ellipsoid).unwrap();
+    let kept = entropy.clone().inside(ellipsoid.clone()).unwrap();
+    assert_eq!(kept.clone().inside(ellipsoid), Err(RegionAcceptanceError::Second));
     let share = MassPropertiesModel::acceptance(&kept).unwrap();
     assert!(share > 0.1 && share < 0.9, "{share}");
     let laws: [Box<dyn MassPropertiesModel>; 4] = [

@@ -205,6 +205,11 @@ fn batches_stay_in_the_region() {
         let law = law.unwrap().inside(region.clone()).unwrap();
         let (share, _) = law.acceptance();
         assert!(share < 0.999, "{kind}: {share}");
+        // A second region would have to replace the first.
+        for second in [region.clone(), Region::solid_box([0.0; 3], [9.0; 3]).unwrap()] {
+            let refused = law.clone().inside(second).unwrap_err();
+            assert_eq!(refused, MassPropertiesLawError::Region(RegionAcceptanceError::Second));
+        }
         let mut rows = vec![[0.0; 10]; 2000];
         law.sample_into(&mut ChaCha8Rng::seed_from_u64(1), &mut rows);
         let body = |row: &[f64; 10]| TenParameters::from_values(*row).unwrap();
