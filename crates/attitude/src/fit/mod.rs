@@ -170,7 +170,9 @@ pub struct Convergence {
     pub converged: bool,
     /// Newton steps from the start that led to the maximum.
     pub iterations: usize,
-    /// What the last step promised to add to the ln-likelihood (half the squared Newton decrement).
+    /// What the last step promised to add to the ln-likelihood (half the squared Newton decrement), infinite where there is no
+    /// such step.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "or_infinite"))]
     pub last_gain: f64,
 }
 

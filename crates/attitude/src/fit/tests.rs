@@ -651,6 +651,30 @@ fn attitudes_without_a_maximum_are_refused() {
     degenerate(&four, "four attitudes");
 }
 
+/// Fits of a few attitudes, which the likelihood may rise about without bound or be flat, are read back as they were.
+#[cfg(feature = "serde")]
+#[test]
+fn fits_without_a_maximum_are_read_back() {
+    let mut endless = 0;
+    let mut rng = ChaCha8Rng::seed_from_u64(174);
+    for case in 0..60_usize {
+        let own: Vec<_> =
+            (0..3 + case % 4).map(|_| crate::UniformAttitude.sample(&mut rng)).collect();
+        let axes =
+            (0..4).map(|i| UnitQuaternion::from_quaternion(Quaternion::from(Vector4::ith(i, 1.0))));
+        let few: Vec<_> = if case % 2 == 0 { axes.collect() } else { own };
+        let data: Vec<_> = (0..13 + case % 30).map(|i| few[i % few.len()]).collect();
+        let with = Family::AlignedWith { radial_variance: 10_f64.powi(case as i32 % 9 - 6) };
+        for family in [Family::Chosen, Family::Bingham, with, Family::Aligned, Family::General] {
+            let Ok(fit) = RadiallyConstrainedGaussian::fit_family(&data, family) else { continue };
+            endless += usize::from(fit.convergence().last_gain == f64::INFINITY);
+            let text = serde_json::to_string(&fit).unwrap();
+            assert_eq!(serde_json::from_str::<Fit>(&text).unwrap(), fit, "{text}");
+        }
+    }
+    assert!(endless > 5, "{endless}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
     /// Anything is fitted or refused, with a likelihood above that of the uniform law.
