@@ -2,6 +2,8 @@
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
+#[cfg(feature = "serde")]
+use crate::{MAX_LENGTH, read::belonging};
 use crate::{MassProperties, Shape, ShapeError};
 
 /// The solid of uniform density that has given mass properties: how large a body looks.
@@ -9,7 +11,7 @@ use crate::{MassProperties, Shape, ShapeError};
 /// Sizes are along the principal axes, in the order of [`PrincipalAxes`](crate::PrincipalAxes).
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[cfg_attr(feature = "serde", serde(remote = "Self", deny_unknown_fields))]
 pub struct EquivalentSolid {
     /// The solid in its own frame, which is principal.
     #[getset(get_copy = "pub")]
@@ -25,6 +27,9 @@ pub struct EquivalentSolid {
     attitude: UnitQuaternion<f64>,
 }
 
+#[cfg(feature = "serde")]
+belonging!(EquivalentSolid);
+
 impl EquivalentSolid {
     fn of(
         body: &MassProperties,
@@ -37,6 +42,13 @@ impl EquivalentSolid {
         let sizes = axes.second_moments().map(|k| root * k.max(0.0).sqrt());
         let (centre, attitude) = (body.mass_centre_m(), axes.attitude());
         Ok(Self { shape: shape(sizes)?, sizes_m: sizes, centre, attitude })
+    }
+
+    /// Whether the sizes are those of the shape, a box or an ellipsoid, and the centre is one of a body.
+    #[cfg(feature = "serde")]
+    fn belongs_together(&self) -> bool {
+        let shapes = [Shape::solid_box, Shape::ellipsoid].map(|shape| shape(self.sizes_m));
+        shapes.contains(&Ok(self.shape)) && self.centre.iter().all(|x| x.abs() <= MAX_LENGTH)
     }
 
     /// Where the solid lies: takes points of its own frame to the reference frame of the body.

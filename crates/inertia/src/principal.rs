@@ -72,9 +72,13 @@ impl PrincipalAxes {
     /// matrix is not realizable.
     #[must_use]
     pub fn second_moments(&self) -> [f64; 3] {
-        let [i1, i2, i3] = self.moments;
-        [0.5 * (i2 + i3 - i1), 0.5 * (i1 + i3 - i2), 0.5 * (i1 + i2 - i3)]
+        second_moments(self.moments)
     }
+}
+
+/// K_k = ½ tr I − I_k.
+pub(crate) fn second_moments([i1, i2, i3]: [f64; 3]) -> [f64; 3] {
+    [0.5 * (i2 + i3 - i1), 0.5 * (i1 + i3 - i2), 0.5 * (i1 + i2 - i3)]
 }
 
 impl InertiaMatrix {

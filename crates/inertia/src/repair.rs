@@ -50,9 +50,11 @@ pub struct Repair {
     inertia: Inertia,
     /// ‖I′ − I‖, Frobenius, kg·m²: 0 if nothing had to be moved.
     #[getset(get_copy = "pub")]
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::read::size"))]
     distance: f64,
     /// The distance over ‖I‖.
     #[getset(get_copy = "pub")]
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::read::size"))]
     relative_distance: f64,
 }
 

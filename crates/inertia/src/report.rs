@@ -3,6 +3,8 @@
 use nalgebra::Matrix3;
 use std::fmt;
 
+#[cfg(feature = "serde")]
+use crate::principal::second_moments;
 use crate::{InertiaMatrix, MAX_ENTRY, RELATIVE_TOLERANCE};
 
 /// Which axes moments of inertia belong to.
@@ -26,8 +28,8 @@ pub enum Fault {
         row: usize,
         /// Column, from 1.
         column: usize,
-        /// The entry, kg·m².
-        #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::read::or_nan"))]
+        /// The entry, kg·m². JSON has it as a text where it is no finite number.
+        #[cfg_attr(feature = "serde", serde(with = "crate::read::any"))]
         value: f64,
     },
     /// Entries across the diagonal differ.
@@ -60,8 +62,8 @@ pub enum Fault {
         axis: usize,
         /// The moments, kg·m².
         moments: [f64; 3],
-        /// How far the largest exceeds the sum of the others, in percent of that sum.
-        percent: f64,
+        /// How far the largest exceeds the sum of the others, in percent of that sum; none where that is nothing.
+        percent: Option<f64>,
     },
     /// A product of inertia is larger in magnitude than half the moment about the third axis:
     /// |I_ij| ≤ ½ I_kk.
@@ -104,6 +106,7 @@ pub enum Fault {
 /// ```
 #[derive(Clone, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(remote = "Self"))]
 #[getset(get_copy = "pub")]
 pub struct RealizabilityReport {
     /// The second mass moments K_k about the principal axes, with their signs, kg·m²; none where an
@@ -118,6 +121,9 @@ pub struct RealizabilityReport {
     #[getset(skip)]
     faults: Vec<Fault>,
 }
+
+#[cfg(feature = "serde")]
+crate::read::belonging!(RealizabilityReport);
 
 impl RealizabilityReport {
     /// Looks at a matrix, in kg·m², products as tensor entries. Any numbers will do.
@@ -200,10 +206,65 @@ impl RealizabilityReport {
         self.principal_moments.map(excess_percent)
     }
 
+    /// Whether some matrix has these numbers, with some tolerance.
+    #[cfg(feature = "serde")]
+    fn belongs_together(&self) -> bool {
+        let of_entries = |fault: &Fault| matches!(fault, Fault::NotFinite { .. });
+        let (Some(k), Some(moments), Some(margin)) =
+            (self.second_moments, self.principal_moments, self.margin)
+        else {
+            let none =
+                (self.second_moments, self.principal_moments, self.margin) == (None, None, None);
+            let faults = &self.faults;
+            return none
+                && !faults.is_empty()
+                && faults.iter().all(|fault| of_entries(fault) && fault.is_one());
+        };
+        let least = k.into_iter().fold(f64::INFINITY, f64::min);
+        let sum: f64 = moments.into_iter().map(|i| i.abs()).sum();
+        // Smaller moments have fewer digits than the margin.
+        let is_margin = if sum > 1e-290 && sum.is_finite() {
+            (margin - least / sum).abs() < 1e-9
+        } else {
+            (-0.5..=0.2).contains(&margin)
+        };
+        k == second_moments(moments)
+            && is_margin
+            && self.faults.iter().all(|fault| !of_entries(fault) && fault.is_one())
+    }
+
     /// What is wrong; nothing if the matrix is realizable.
     #[must_use]
     pub fn faults(&self) -> &[Fault] {
         &self.faults
+    }
+}
+
+#[cfg(feature = "serde")]
+impl Fault {
+    /// Whether its numbers are at fault, and of a matrix of three rows.
+    fn is_one(&self) -> bool {
+        let across = |row: usize, column: usize| (1..column).contains(&row) && column <= 3;
+        match *self {
+            Self::NotFinite { row, column, value } => {
+                (1..=3).contains(&row) && (1..=3).contains(&column) && !(value.abs() <= MAX_ENTRY)
+            }
+            Self::NotSymmetric { row, column, upper, lower, percent } => {
+                across(row, column) && upper != lower && (0.0..=201.0).contains(&percent)
+            }
+            Self::NegativeMoment { axes: Axes::Given | Axes::Principal, axis, moment } => {
+                (1..=3).contains(&axis) && moment < 0.0
+            }
+            Self::Triangle { axes: Axes::Given | Axes::Principal, axis, moments, percent } => {
+                let excess = excess_percent(moments);
+                axis == largest(moments).0 + 1
+                    && excess > 0.0
+                    && percent == Some(excess).filter(|p| p.is_finite())
+            }
+            Self::Product { row, column, product, moment } => {
+                across(row, column) && product.abs() > (0.5 * moment).max(0.0)
+            }
+        }
     }
 }
 
@@ -249,7 +310,7 @@ fn moment_faults(axes: Axes, moments: [f64; 3], slack: f64, faults: &mut Vec<Fau
     let (axis, rest) = largest(moments);
     // A negative moment breaks the inequality as well: once is enough.
     if faults.len() == before && moments[axis] - rest > 2.0 * slack {
-        let percent = excess_percent(moments);
+        let percent = Some(excess_percent(moments)).filter(|p| p.is_finite());
         faults.push(Fault::Triangle { axes, axis: axis + 1, moments, percent });
     }
 }
@@ -322,7 +383,7 @@ impl fmt::Display for Fault {
                     short(moments[others[1]])
                 )?;
                 // Of nothing there is no percentage.
-                if p.is_finite() { write!(f, ", by {} %", percent(p)) } else { Ok(()) }
+                p.map_or(Ok(()), |p| write!(f, ", by {} %", percent(p)))
             }
             Self::Product { row, column, product, moment } => {
                 let third = 6 - row - column;
@@ -402,7 +463,9 @@ mod tests {
         );
         for short in [1e-3, 1e-12] {
             let found = faults(diagonal([1.0, 2.0, 3.0 * (1.0 + short)]));
-            let [Fault::Triangle { axis: 3, axes: Axes::Given, percent, .. }] = found[..] else {
+            let [Fault::Triangle { axis: 3, axes: Axes::Given, percent: Some(percent), .. }] =
+                found[..]
+            else {
                 panic!("{found:?}");
             };
             assert!((percent / (100.0 * short) - 1.0).abs() < 1e-2, "{percent}");
@@ -537,6 +600,48 @@ mod tests {
         fn no_numbers_panic(entries in prop::array::uniform9(prop::num::f64::ANY), tolerance in prop::num::f64::ANY) {
             let report = RealizabilityReport::within(&Matrix3::from_row_slice(&entries), tolerance);
             let _ = (report.to_string(), report.excess_percent(), report.is_strict());
+        }
+
+        /// What is written of any matrix reads back, and what is spoilt in it is refused.
+        #[cfg(feature = "serde")]
+        #[test]
+        fn reports_read_back(
+            entries in prop_oneof![
+                prop::array::uniform9(prop_oneof![-3..4_i32, Just(0)].prop_map(f64::from)),
+                prop::array::uniform6(-3..4_i32).prop_map(|e| [0, 1, 2, 1, 3, 4, 2, 4, 5].map(|i| f64::from(e[i]))),
+                prop::array::uniform9(prop::num::f64::ANY),
+                prop::array::uniform9(prop_oneof![Just(1.0), Just(f64::INFINITY), Just(f64::NEG_INFINITY), Just(f64::NAN)]),
+            ],
+            exponent in -300..300_i32,
+            tolerance in prop_oneof![Just(0.0), Just(1e-6), Just(0.9)],
+        ) {
+            let matrix = Matrix3::from_row_slice(&entries) * 10_f64.powi(exponent);
+            let report = RealizabilityReport::within(&matrix, tolerance);
+            let text = serde_json::to_string(&report).unwrap();
+            let read = |text: &str| serde_json::from_str::<RealizabilityReport>(text);
+            let back = read(&text).map_err(|error| TestCaseError::fail(format!("{error}: {text}")))?;
+            prop_assert_eq!(&serde_json::to_string(&back).unwrap(), &text);
+            // NaN is not equal to itself.
+            if !matrix.iter().any(|x| x.is_nan()) {
+                prop_assert_eq!(&back, &report);
+            }
+            let whole: serde_json::Value = serde_json::from_str(&text).unwrap();
+            for (place, bad) in [
+                ("/second_moments/0", 1.5e307),
+                ("/principal_moments/2", 1.5e307),
+                ("/margin", 0.3),
+                ("/faults/0/NotSymmetric/row", 3.0),
+                ("/faults/0/Triangle/axis", 4.0),
+                ("/faults/0/NegativeMoment/moment", 0.0),
+                ("/faults/0/NotFinite/column", 0.0),
+                ("/faults/0/Product/product", 0.0),
+            ] {
+                let mut spoilt = whole.clone();
+                if let Some(number) = spoilt.pointer_mut(place).filter(|x| x.is_number()) {
+                    *number = if number.is_f64() { bad.into() } else { (bad as u64).into() };
+                    prop_assert!(read(&spoilt.to_string()).is_err(), "{}: {}", place, text);
+                }
+            }
         }
     }
 }

@@ -68,11 +68,11 @@ pub enum ShapeError {
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Measure {
     /// Of a solid, m³; density in kg/m³.
-    Volume(f64),
+    Volume(#[cfg_attr(feature = "serde", serde(deserialize_with = "crate::read::size"))] f64),
     /// Of a thin shell or plate, m²; density in kg/m².
-    Area(f64),
+    Area(#[cfg_attr(feature = "serde", serde(deserialize_with = "crate::read::size"))] f64),
     /// Of a thin rod, m; density in kg/m.
-    Length(f64),
+    Length(#[cfg_attr(feature = "serde", serde(deserialize_with = "crate::read::size"))] f64),
 }
 
 impl Measure {
