@@ -110,8 +110,8 @@ impl TenEstimate {
     /// From the mean and the covariance of ten numbers, in kg, m (or kg·m) and kg·m², products as tensor entries.
     ///
     /// # Errors
-    /// A number is not finite or beyond 1e40, the covariance is not symmetric or has a negative eigenvalue, or there is neither a
-    /// mass nor a deviation of it.
+    /// A number is not finite or beyond 1e40, the covariance is not symmetric or has a negative eigenvalue, what has no variance has a
+    /// covariance, or there is neither a mass nor a deviation of it.
     pub fn new(
         form: TenForm,
         mean: SVector<f64, 10>,
@@ -144,6 +144,10 @@ impl TenEstimate {
                         / deviations[column];
                     correlation[(row, column)] = value;
                     correlation[(column, row)] = value;
+                } else if lower != 0.0 {
+                    let fixed = if deviations[column] == 0.0 { column } else { row } + 1;
+                    let (row, column) = (column + 1, row + 1);
+                    return Err(TenEstimateError::Fixed { row, column, value: lower, fixed });
                 }
             }
         }
@@ -192,8 +196,11 @@ impl TenEstimate {
     /// order of 1 %: an estimate is better given as it is. None if the mass is not positive.
     #[must_use]
     pub fn to_natural(&self) -> Option<Self> {
-        let natural = self.to_natural_with_rounding()?;
-        Self::new(natural.form, natural.mean, natural.covariance).ok()
+        let Self { form, mean, covariance } = self.to_natural_with_rounding()?;
+        // Covariances with what does not vary are rounding.
+        let varies = |i: usize| covariance[(i, i)] > 0.0;
+        let exact = |i, j| if varies(i) && varies(j) { covariance[(i, j)] } else { 0.0 };
+        Self::new(form, mean, Matrix10::from_fn(exact)).ok()
     }
 
     /// The same, with eigenvalues that rounding may have made negative.
@@ -284,6 +291,20 @@ pub enum TenEstimateError {
     /// An entry of the covariance, or two that are not the same.
     #[error(transparent)]
     Covariance(#[from] CovarianceError),
+    /// A covariance with a parameter that does not vary.
+    #[error(
+        "covariance entry ({row}, {column}) = {value:?}: it must be 0, for the variance of parameter {fixed} is 0"
+    )]
+    Fixed {
+        /// Row of the entry above the diagonal, from 1.
+        row: usize,
+        /// Its column, from 1.
+        column: usize,
+        /// The entry.
+        value: f64,
+        /// The parameter that does not vary, from 1.
+        fixed: usize,
+    },
     /// Some combination would have a negative variance.
     #[error("the correlations have an eigenvalue of {eigenvalue:.3e}: none may be negative")]
     Indefinite {

@@ -322,6 +322,36 @@ fn what_is_no_estimate_is_refused_by_name() {
     assert!(error(none, with(0, 0, 0.0)).contains("mass = -1.0"));
 }
 
+proptest::proptest! {
+    /// What does not vary has no covariances: any that is stated is refused by its place, and the estimate without it is taken as it is.
+    #[test]
+    fn what_has_no_variance_has_no_covariances(
+        seed in proptest::prelude::any::<u64>(),
+        fixed in proptest::collection::btree_set(0_usize..10, 1..6),
+        other in 0_usize..10,
+        value in proptest::prop_oneof![-1e3..-1e-300, 1e-300..1e3],
+    ) {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mean = Ten::from([2.0, 0.0, 0.0, 0.1, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
+        let varies = |i: usize| if fixed.contains(&i) { 0.0 } else { 1.0 };
+        let s = Ten::from_fn(|i, _| varies(i) * rng.random_range(0.01..10.0));
+        let c = random_correlation(&mut rng);
+        let known = estimate(TenForm::Natural, mean, &s, &c);
+        for (found, stated) in known.deviations().into_iter().zip(s.iter()) {
+            proptest::prop_assert!((found - stated).abs() <= 1e-12 * stated);
+        }
+        for i in fixed.iter().copied().filter(|i| *i != other) {
+            let mut covariance = *known.covariance();
+            covariance[(i, other)] = value;
+            covariance[(other, i)] = value;
+            let found = TenEstimate::new(TenForm::Natural, mean, covariance);
+            let (row, column) = (i.min(other) + 1, i.max(other) + 1);
+            let fixed = if varies(row - 1) == 0.0 { row } else { column };
+            proptest::prop_assert_eq!(found, Err(TenEstimateError::Fixed { row, column, value, fixed }));
+        }
+    }
+}
+
 /// Independent deviations of the linear ten of bodies that are small beside their distance from the origin: no law has these
 /// moments, and one that is concentrated at the mean is nearer than many. What is found is nearer still.
 #[test]
