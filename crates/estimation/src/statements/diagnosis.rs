@@ -254,7 +254,8 @@ fn of_outcome(model: &StatedModel) -> Vec<StatementWarning> {
         }
     }
     let k = nominal.second_moments().values();
-    let moments = model.law().roots().second_moment_statistics();
+    // The mass multiplies all moments alike, and makes none the larger one.
+    let moments = model.law_at_nominal_mass().roots().second_moment_statistics();
     let (scatter, c) = (moments.variances(), moments.covariance());
     for [m, n] in [[0, 1], [0, 2], [1, 2]] {
         // A uniform turn is told.

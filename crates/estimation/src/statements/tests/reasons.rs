@@ -112,3 +112,24 @@ fn what_moves_an_entry_more_moves_it_alone() {
     }
     assert!(told.into_iter().all(|count| count >= 3), "{told:?}");
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// The mass multiplies all moments alike: however much it scatters, the axes of no body mean less for it.
+    #[test]
+    fn the_mass_makes_no_moments_equal(
+        k in prop::array::uniform3(1.0..100.0_f64),
+        turn in prop::array::uniform3(-3.0..3.0_f64),
+        degrees in prop::option::of(prop::array::uniform3(0.05..5.0_f64)),
+        percent in 1.0..100.0_f64,
+    ) {
+        let q = UnitQuaternion::from_scaled_axis(Vector3::from(turn));
+        let nominal = Inertia::from_second_moments(SecondMoments::new(k).unwrap(), &q).unwrap();
+        let mass = Some(MassStatement::percent(percent, 1.0).unwrap());
+        let axes = degrees.map(|degrees| AxesStatement::each(degrees, 1.0).unwrap());
+        let model = Statements { mass, axes, ..Statements::default() }.model(&nominal, None).unwrap();
+        let is_it = |w: &&StatementWarning| matches!(w, StatementWarning::EqualMoments { .. });
+        prop_assert_eq!(model.warnings().iter().find(is_it), None);
+    }
+}
