@@ -166,17 +166,15 @@ impl Heading {
         }
     }
 
-    /// The first of the ten among some columns in a unit that is not of SI, if this one is a number of its kind that
-    /// states no unit: nobody knows then whether it is in that unit or in SI.
+    /// The first among some columns of its kind in a unit that is not of SI, if this one is a number that states no unit: nobody knows
+    /// then whether it is in that unit or in SI.
     pub(crate) fn unit_it_lacks(&self, beside: &[Self]) -> Option<usize> {
         let (dimension, None) = self.dimension()? else { return None };
-        beside.iter().position(|other| match *other {
-            Self::Column(Column::Value(i, Some(si))) => {
-                si != 1.0 && Group(i, 1).dimension() == dimension
-            }
-            Self::Size(_, Some(si)) => si != 1.0 && dimension == Dimension::Length,
-            _ => false,
-        })
+        let is_in_other = |other: &Self| {
+            let stated = other.dimension();
+            stated.is_some_and(|(of, unit)| of == dimension && unit.is_some_and(|si| si != 1.0))
+        };
+        beside.iter().position(is_in_other)
     }
 
     /// Why the unit of a column is not read, if it is a number's. Beside a column of the number, its name with other

@@ -404,4 +404,6 @@ fn cell(text: &Text, field: &Field) -> String {
 #[cfg(test)]
 mod spreadsheets;
 #[cfg(test)]
+mod stated_units;
+#[cfg(test)]
 mod tests;

@@ -311,7 +311,8 @@ fn every_wrong_deviation_is_named() {
         ("sigma_products", "sigma_products"),
     ] {
         for (cell, why) in [("-1", "= -1.0: it must be"), ("few", "= \"few\" is not a number")] {
-            let text = format!("name,mass,cx,cy,cz,shape,{heading}\na,1,0,0,0,point,{cell}\n");
+            let text =
+                format!("name,mass_kg,cx_m,cy_m,cz_m,shape,{heading}\na,1,0,0,0,point,{cell}\n");
             let found = read(&text).unwrap_err().to_string();
             assert!(found.starts_with(&format!("line 2: a: {field} {why}")), "{heading}: {found}");
         }
@@ -357,61 +358,6 @@ fn no_percentage_is_taken_of_zero_products() {
 }
 
 proptest! {
-    /// Each column in SI, in another unit or in none that is stated: beside numbers in another unit, none is read without.
-    #[test]
-    fn a_number_without_a_unit_is_never_guessed(
-        stated in prop::array::uniform20(0_usize..6),
-        allowed in prop::array::uniform3(prop::sample::subsequence(vec![0, 1, 2], 1..=3)),
-    ) {
-        let kinds = [("kg", "g", 1e-3), ("m", "mm", 1e-3), ("kg m2", "g mm2", 1e-9)];
-        let kind = |i: usize| match i % 10 {
-            0 => 0,
-            1..=3 => 1,
-            _ => 2,
-        };
-        let stated = std::array::from_fn::<usize, 20, _>(|i| {
-            let allowed = &allowed[kind(i)];
-            allowed[stated[i] % allowed.len()]
-        });
-        let columns: Vec<String> = stated
-            .iter()
-            .enumerate()
-            .map(|(i, unit)| {
-                let (si, other, _) = kinds[kind(i)];
-                let unit = [String::new(), format!(" [{si}]"), format!(" [{other}]")][*unit].clone();
-                format!("{}{}{unit}", if i < 10 { "" } else { "sigma_" }, heading::VALUES[i % 10])
-            })
-            .collect();
-        let numbers: Vec<String> = (1..=20).map(|i| i.to_string()).collect();
-        let text = format!("name,products,{}\na,tensor,{}\n", columns.join(","), numbers.join(","));
-        let of = |kind_of: usize, unit: usize| {
-            (0..10).find(|i| kind(*i) == kind_of && stated[*i] == unit)
-        };
-        let unclear = (0..20).find(|i| stated[*i] == 0 && of(kind(*i), 2).is_some());
-        match (read(&text), unclear) {
-            (Ok(table), None) => {
-                let found = table.rows()[0].numbers().unwrap();
-                let [x, y, z] = found.mass_centre_m();
-                let values = [&[found.mass_kg(), x, y, z][..], &found.inertia().entries()].concat();
-                let all = [values, found.deviations().to_vec()].concat();
-                for (i, found) in all.into_iter().enumerate() {
-                    let unit = if stated[i] == 2 { kinds[kind(i)].2 } else { 1.0 };
-                    let expected = (i + 1) as f64 * unit;
-                    prop_assert!((found / expected - 1.0).abs() < 1e-14, "{}: {found}", columns[i]);
-                }
-            }
-            (Err(error), Some(i)) => {
-                let said = format!(
-                    "line 1: column {:?} states no unit, and column {:?} states one",
-                    columns[i],
-                    columns[of(kind(i), 2).unwrap()]
-                );
-                prop_assert!(error.to_string().starts_with(&said), "{error}");
-            }
-            (found, unclear) => prop_assert!(false, "{text}: {unclear:?}, {found:?}"),
-        }
-    }
-
     /// Garbage, and good tables with garbage in them.
     #[test]
     fn no_bytes_panic(
