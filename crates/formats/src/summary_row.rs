@@ -64,23 +64,37 @@ pub(crate) fn is_summary(cell: &str) -> bool {
     deviation || words().any(is_key) && words().all(|word| is_key(word) || BESIDE.contains(&word))
 }
 
-/// Whether a name speaks of a sum, and may be that of a part all the same: `Bus subtotal`, `total pressure sensor`.
-pub(crate) fn speaks_of_sums(name: &str) -> bool {
-    const SUMS: [&str; 11] = [
+/// How many rows the row of a name must have the sum of, at least, to be taken for that sum, if the name speaks of one. Two rows, as
+/// it may be that of a part all the same, `total pressure sensor`; one, where it can be nothing else: `Bus subtotal`, `Sum of a`.
+pub(crate) fn least_summed(name: &str) -> Option<usize> {
+    const SUMS: [&str; 10] = [
         "total",
         "totals",
         "subtotal",
         "subtotals",
         "sum",
-        "average",
-        "mean",
+        "sums",
         "gesamt",
+        "summe",
         "totale",
         "somme",
-        "mass",
     ];
+    const OTHERS: [&str; 3] = ["average", "mean", "mass"];
+    const OF: [&str; 4] = ["of", "for", "von", "de"];
     let lower = name.to_lowercase();
-    lower.split(|c: char| !c.is_alphanumeric()).any(|word| SUMS.contains(&word))
+    let words = || lower.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty());
+    if !words().any(|word| SUMS.contains(&word) || OTHERS.contains(&word)) {
+        return None;
+    }
+    // `Total dry mass of the bus`, `Bus total mass (kg)`.
+    let told: Vec<&str> =
+        words().filter(|word| OF.contains(word) || !BESIDE.contains(word)).collect();
+    let is_sum = |(at, word): (usize, &&str)| {
+        let next = told.get(at + 1);
+        let is_whole = word.starts_with("subtotal");
+        SUMS.contains(word) && (is_whole || next.is_none_or(|next| OF.contains(next)))
+    };
+    Some(if told.iter().enumerate().any(is_sum) { 1 } else { 2 })
 }
 
 #[cfg(test)]
@@ -129,5 +143,35 @@ mod tests {
             assert!(!is_summary(name), "{name}");
         }
         assert!(!is_summary(&"total ".repeat(50)));
+    }
+
+    #[test]
+    fn names_that_can_only_be_sums_are_told_from_others() {
+        for part in ["a", "bus", "Bus 2", "solar array", "tank (full)"] {
+            for name in [
+                format!("{part} subtotal"),
+                format!("Subtotal {part}"),
+                format!("Sub-total of {part}"),
+                format!("Sum of {part}"),
+                format!("{part} total"),
+                format!("{part} TOTAL MASS (kg)"),
+                format!("Total for {part}"),
+                format!("total dry mass of the {part}"),
+                format!("{part}: sum"),
+                format!("Summe von {part}"),
+            ] {
+                assert_eq!(least_summed(&name), Some(1), "{name}");
+            }
+            for name in [
+                format!("total pressure sensor of {part}"),
+                format!("sum amplifier, {part}"),
+                format!("mean 3 antenna {part}"),
+                format!("{part} mass"),
+                format!("Total {part}"),
+            ] {
+                assert_eq!(least_summed(&name), Some(2), "{name}");
+            }
+            assert_eq!(least_summed(part), None, "{part}");
+        }
     }
 }

@@ -49,6 +49,7 @@ proptest! {
         parts in proptest::collection::vec((0.1..100.0, proptest::array::uniform3(-3.0..3.0)), 2..8),
         place in any::<prop::sample::Index>(),
     ) {
+        let raw = &parts.clone();
         let mass: f64 = parts.iter().map(|(mass, _)| mass).sum();
         let centre = |axis: usize| parts.iter().map(|(m, c): &(f64, [f64; 3])| m * c[axis]).sum::<f64>() / mass;
         let row = |name: &str, mass: f64, c: [f64; 3]| {
@@ -78,6 +79,21 @@ proptest! {
         named.push(total("Bus subtotal"));
         let refused = read(&format!("{head}{}", named.join("\n"))).unwrap_err().to_string();
         prop_assert!(refused.contains("Bus subtotal: the name is that of a row which sums up others"), "{}", refused);
+        // Of one row too, if the name can be nothing else; a part may be as heavy as another at the same place.
+        let at = place.index(parts.len());
+        let (of, c) = &raw[at];
+        let twice = |name: &str| {
+            let mut rows = parts.clone();
+            rows.insert(at + 1, row(name, *of, *c));
+            read(&format!("{head}{}", rows.join("\n"))).map(|_| ()).map_err(|error| error.to_string())
+        };
+        for name in ["part subtotal", "Sum of part", "part total"] {
+            let refused = twice(name).unwrap_err();
+            prop_assert!(refused.contains(&format!("{name}: the name is that of a row which sums")), "{}", refused);
+        }
+        for name in ["total pressure sensor", "sump"] {
+            prop_assert_eq!(twice(name), Ok(()));
+        }
         named = [row("total pressure sensor", 0.01, [9.0; 3])].into_iter().chain(parts).collect();
         prop_assert!(totals(&named).is_empty());
         named.push(total("Payload total"));

@@ -1,7 +1,7 @@
 //! Rows of a list of parts that sum up others: counted as parts, they would be counted twice.
 
 use super::row::{PartNumbers, PartRow};
-use crate::summary_row::{is_summary, speaks_of_sums};
+use crate::summary_row::{is_summary, least_summed};
 
 /// How far the numbers of a total may be from those of its parts, as they are rounded.
 const ROUNDED: f64 = 1e-3;
@@ -21,7 +21,8 @@ pub(super) fn named(rows: &[PartRow]) -> Option<&PartRow> {
     let mut parts: Vec<Moments> = Vec::new();
     for (row, numbers) in rows.iter().filter_map(|row| Some((row, row.numbers()?))) {
         let found = moments(numbers);
-        if is_summary(row.name()) || speaks_of_sums(row.name()) && is_sum(&parts, found, size) {
+        let is_sum = |least| is_sum(&parts, least, found, size);
+        if is_summary(row.name()) || least_summed(row.name()).is_some_and(is_sum) {
             return Some(row);
         }
         parts.push(found);
@@ -49,12 +50,12 @@ pub(super) fn like_totals(rows: &[PartRow]) -> Vec<&PartRow> {
     found
 }
 
-/// Whether it is the sum of two or more of the last ones.
-fn is_sum(parts: &[Moments], of: Moments, size: f64) -> bool {
+/// Whether it is the sum of so many or more of the last ones.
+fn is_sum(parts: &[Moments], least: usize, of: Moments, size: f64) -> bool {
     let mut sum = [0.0; 4];
-    parts.iter().rev().enumerate().any(|(at, one)| {
+    parts.iter().rev().zip(1..).any(|(one, count)| {
         sum = plus(sum, *one);
-        at > 0 && is_same(sum, of, size)
+        count >= least && is_same(sum, of, size)
     })
 }
 
