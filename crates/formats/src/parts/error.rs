@@ -128,6 +128,9 @@ fn because(what: Unread) -> &'static str {
         Unread::Unit => {
             "units are those of a column, and must stand in its heading or in a row below the header"
         }
+        Unread::Reference => {
+            "the inertia is that about the part's own mass centre: the column must be empty, or say so, as \"cg\" or \"mass centre\""
+        }
         Unread::Growth => {
             "no growth allowance is added: the mass and the inertia must have it in them; the column must be empty, 0 or none"
         }

@@ -194,7 +194,7 @@ impl Cells<'_> {
             | Heading::Signed
             | Heading::NoDeviation
             | Heading::SizeDeviation
-            | Heading::Unread(Unread::Turn | Unread::Growth | Unread::Unit)
+            | Heading::Unread(Unread::Turn | Unread::Growth | Unread::Unit | Unread::Reference)
             | Heading::Other => false,
         };
         let mut cells = self.columns.iter().zip(self.headings).zip(self.cells);

@@ -133,13 +133,35 @@ fn columns_that_would_change_a_row_are_refused() {
         ("Menge", "1", "-", "a row is one part"),
         ("q1", "0", "0.7", "angles are not read"),
         ("unit", "kg", "g", "must stand in its heading"),
+        ("length unit", "m", "mm", "must stand in its heading"),
+        ("inertia_units", "kg m^2", "kg mm2", "must stand in its heading"),
+        ("mass units", "kg", "lb", "must stand in its heading"),
+        ("Number of parts", "1", "4", "a row is one part"),
+        ("n_parts", "1", "4", "a row is one part"),
+        ("number", "1", "4", "a row is one part"),
+        ("num", "one", "four", "a row is one part"),
+        ("multiplier", "1.0", "0.5", "a row is one part"),
+        ("mult", "x1", "x4", "a row is one part"),
+        ("amount", "1", "4", "a row is one part"),
+        ("unit qty", "1", "4", "a row is one part"),
+        ("R11", "0", "0.5", "angles are not read"),
+        ("rotation matrix", "identity", "0 1 0; -1 0 0; 0 0 1", "angles are not read"),
+        ("inertia about", "CG", "origin", "about the part's own mass centre"),
+        ("MOI about", "own mass centre", "base", "about the part's own mass centre"),
     ] {
         assert_eq!(with(heading, neutral, "bus"), Ok(()), "{heading}");
         assert_eq!(with(heading, "", "bus"), Ok(()), "{heading}");
         let message = with(heading, changing, "bus").unwrap_err();
         assert!(message.contains(why) && message.contains(heading), "{message}");
     }
-    for heading in ["pitch diameter [mm]", "Roll number", "thermal margin", "Quantity price"] {
+    for heading in [
+        "pitch diameter [mm]",
+        "Roll number",
+        "thermal margin",
+        "Quantity price",
+        "item number",
+        "part no.",
+    ] {
         assert_eq!(with(heading, "7", "bus"), Ok(()), "{heading}");
     }
     // In a row of units below the header, what a column cannot have.

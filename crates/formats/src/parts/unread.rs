@@ -1,6 +1,9 @@
 //! Columns that would change the numbers of a row, and are not read.
 
-use crate::spread::words;
+use crate::{
+    spread::words,
+    units::{Dimension, Unit, squeezed},
+};
 
 /// What would change the numbers of a row, and is not read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,20 +16,66 @@ pub enum Unread {
     Growth,
     /// The unit of a row.
     Unit,
+    /// The point that the inertia is about.
+    Reference,
 }
 
-/// A kind: words that a heading of it has, one of them at least, and words that may stand beside them. With any other word, it is a
-/// heading of something else, as `pitch diameter`.
-type Words = (Unread, &'static [&'static str], &'static [&'static str]);
+/// A kind: words that a heading of it has, one of each list and in this order, and words that may stand beside them. With any other
+/// word, it is a heading of something else, as `pitch diameter`.
+type Words = (Unread, &'static [&'static [&'static str]], &'static [&'static str]);
 
-const KINDS: [Words; 4] = [
+/// Names of the inertia as a whole.
+const INERTIAS: [&str; 5] = ["inertia", "inertias", "moi", "moments", "products"];
+
+const KINDS: [Words; 8] = [
     // Before counts: `units` alone are those of the row.
-    (Unread::Unit, &["unit", "units", "uom"], &["mass", "of"]),
+    (
+        Unread::Unit,
+        &[&["unit", "units", "uom"]],
+        &[
+            "mass",
+            "masses",
+            "of",
+            "for",
+            "the",
+            "length",
+            "lengths",
+            "inertia",
+            "inertias",
+            "moments",
+            "products",
+            "centre",
+            "center",
+            "cg",
+            "com",
+            "moi",
+            "poi",
+            "distance",
+            "dimension",
+            "dimensions",
+            "size",
+            "sizes",
+            "weight",
+        ],
+    ),
+    // A `part number` names a part, and a `number of parts` counts it.
+    (Unread::Count, &[&["number", "num"]], &[]),
     (
         Unread::Count,
         &[
+            &["no", "nr", "num", "number", "n"],
+            &["parts", "items", "bodies", "components", "identical", "per", "of"],
+        ],
+        &["the", "in", "assembly", "assy", "set", "item", "total"],
+    ),
+    (
+        Unread::Count,
+        &[&[
             "qty",
             "quantity",
+            "amount",
+            "multiplier",
+            "mult",
             "count",
             "pcs",
             "pieces",
@@ -42,15 +91,15 @@ const KINDS: [Words; 4] = [
             "stück",
             "qté",
             "qte",
-        ],
+        ]],
         &[
-            "no", "nr", "num", "number", "of", "parts", "total", "per", "assembly", "assy", "set",
-            "item", "items", "the", "in",
+            "no", "nr", "num", "number", "n", "of", "part", "parts", "total", "per", "assembly",
+            "assy", "set", "item", "items", "the", "in", "unit",
         ],
     ),
     (
         Unread::Turn,
-        &[
+        &[&[
             "roll",
             "pitch",
             "yaw",
@@ -92,15 +141,24 @@ const KINDS: [Words; 4] = [
             "dcm31",
             "dcm32",
             "dcm33",
-        ],
+            "r11",
+            "r12",
+            "r13",
+            "r21",
+            "r22",
+            "r23",
+            "r31",
+            "r32",
+            "r33",
+        ]],
         &[
             "deg", "degree", "degrees", "rad", "radians", "x", "y", "z", "w", "1", "2", "3",
-            "about", "axis", "xyz", "zyx",
+            "about", "axis", "xyz", "zyx", "matrix",
         ],
     ),
     (
         Unread::Growth,
-        &["mga", "growth", "contingency", "margin"],
+        &[&["mga", "growth", "contingency", "margin"]],
         &[
             "mass",
             "allowance",
@@ -116,6 +174,8 @@ const KINDS: [Words; 4] = [
             "and",
         ],
     ),
+    (Unread::Reference, &[&INERTIAS, &["about"]], &["of", "taken", "the", "point", "and"]),
+    (Unread::Reference, &[&INERTIAS, &["reference", "ref"], &["point"]], &["of", "the"]),
 ];
 
 /// Words and marks that say of an angle or an allowance that there is none.
@@ -126,9 +186,11 @@ impl Unread {
     pub(super) fn of(heading: &str) -> Option<Self> {
         let lower = heading.to_lowercase();
         let all: Vec<&str> = words(&lower).filter(|word| !word.is_empty()).collect();
-        let is_of = |(_, keys, beside): &&Words| {
-            let is_key = |word: &&str| keys.contains(word);
-            all.iter().any(is_key) && all.iter().all(|word| is_key(word) || beside.contains(word))
+        let is_of = |(_, lists, beside): &&Words| {
+            let mut rest = all.iter();
+            let is_key = |word: &&str| lists.iter().any(|keys| keys.contains(word));
+            lists.iter().all(|keys| rest.any(|word| keys.contains(word)))
+                && all.iter().all(|word| is_key(word) || beside.contains(word))
         };
         KINDS.iter().find(is_of).map(|(kind, ..)| *kind)
     }
@@ -152,9 +214,29 @@ impl Unread {
                 let plain = cell.to_lowercase();
                 let known = ["kg", "m", "kgm2", "kg·m²", "si", "ea", "each", "pc", "pcs"];
                 let is_unit = |word: &str| word.contains(char::is_alphabetic);
-                plain
-                    .split([',', ' ', ';', '/'])
-                    .all(|word| !is_unit(word) || known.contains(&word))
+                let is_si = |of| Unit::of(cell, of).is_ok_and(|unit| unit.si == 1.0);
+                is_si(Dimension::Inertia)
+                    || plain
+                        .split([',', ' ', ';', '/'])
+                        .all(|word| !is_unit(word) || known.contains(&word))
+            }
+            Self::Reference => {
+                let plain = squeezed(cell);
+                let known = [
+                    "cg",
+                    "cog",
+                    "com",
+                    "cm",
+                    "masscentre",
+                    "masscenter",
+                    "centreofmass",
+                    "centerofmass",
+                    "centreofgravity",
+                    "centerofgravity",
+                ];
+                let of_part = ["own", "its", "the", "part", "parts"];
+                let rest = of_part.iter().find_map(|word| plain.strip_prefix(word));
+                known.contains(&rest.unwrap_or(&plain)) || plain == "own"
             }
         }
     }
@@ -182,6 +264,26 @@ mod tests {
             ("mass with margin [kg]", Unread::Growth),
             ("unit", Unread::Unit),
             ("Units", Unread::Unit),
+            ("length unit", Unread::Unit),
+            ("inertia_units", Unread::Unit),
+            ("unit of mass", Unread::Unit),
+            ("Number of parts", Unread::Count),
+            ("n_parts", Unread::Count),
+            ("No. of items per assembly", Unread::Count),
+            ("number", Unread::Count),
+            ("Num.", Unread::Count),
+            ("number of", Unread::Count),
+            ("number per set", Unread::Count),
+            ("multiplier", Unread::Count),
+            ("mult", Unread::Count),
+            ("Amount", Unread::Count),
+            ("unit qty", Unread::Count),
+            ("Qty per unit", Unread::Count),
+            ("R11", Unread::Turn),
+            ("rotation matrix", Unread::Turn),
+            ("inertia about", Unread::Reference),
+            ("MOI ref. point", Unread::Reference),
+            ("moments about the point", Unread::Reference),
         ] {
             assert_eq!(Unread::of(heading), Some(kind), "{heading}");
         }
@@ -197,6 +299,22 @@ mod tests {
             "Quantity unit price",
             "count verified by",
             "pieces drawing",
+            "part number",
+            "item number",
+            "assembly no.",
+            "parts number",
+            "serial number",
+            "No.",
+            "n",
+            "amount paid",
+            "unit price",
+            "R1",
+            "R110",
+            "inertia class",
+            "about",
+            "reference",
+            "inertia reference",
+            "moments",
             "material",
             "",
             "#",
