@@ -249,6 +249,14 @@ pub enum PartsProblem {
         /// The shape.
         shape: String,
     },
+    /// Two statements that contradict each other.
+    #[error("{first} and {second} contradict each other: one of them must go, or say the same")]
+    Contradiction {
+        /// One of them.
+        first: String,
+        /// The other.
+        second: String,
+    },
     /// Nobody says which sign the products have.
     #[error(
         "{field} is not zero, and nothing says which sign products have: there must be a column \

@@ -3,6 +3,7 @@
 mod error;
 pub(crate) mod heading;
 mod row;
+mod row_shape;
 mod totals;
 mod unread;
 
@@ -193,7 +194,7 @@ impl PartsTable {
             }
         }
         let has_parents = has(Column::Parent);
-        let products = stated_products(&text)?.or(products);
+        let stated = stated_products(&text)?;
         let mut found = Vec::new();
         while let Some(fields) = next(&text, &mut rows)? {
             let line = line_of(&text, &fields);
@@ -204,7 +205,8 @@ impl PartsTable {
             }
             let cells: Vec<String> = fields.iter().map(|field| written(&text, field)).collect();
             let row =
-                Cells { columns: &columns, headings: &headings, cells: &cells, products }.row(line);
+                Cells { columns: &columns, headings: &headings, cells: &cells, stated, products }
+                    .row(line);
             found.push(row.map_err(|error| error.beside(&passed_over))?);
         }
         if found.is_empty() {
@@ -286,8 +288,9 @@ impl Edges {
             let (child, parent) = (of(places[0])?, of(places[1])?);
             // A child that stands four times, or has a 4 beside it, is meant to be there four times.
             let cells: Vec<String> = fields.iter().map(|field| written(&text, field)).collect();
+            let (stated, products) = (None, None);
             let row =
-                Cells { columns: &columns, headings: &headings, cells: &cells, products: None };
+                Cells { columns: &columns, headings: &headings, cells: &cells, stated, products };
             if let Some(problem) = row.unread().or_else(|| row.not_known(false, false)) {
                 return Err(PartsError::new(line, Some(&child), problem));
             }
@@ -401,6 +404,8 @@ fn cell(text: &Text, field: &Field) -> String {
     if plain == NOT_KNOWN { String::new() } else { plain }
 }
 
+#[cfg(test)]
+mod contradictions;
 #[cfg(test)]
 mod spreadsheets;
 #[cfg(test)]

@@ -2,7 +2,6 @@
 
 use gyradius_inertia::{InertiaMatrix, Shape};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use serde_json::{Map, Value};
 
 use super::error::{PartsError, PartsFile, PartsProblem};
 use super::heading::{self, Column, GYRATION, Group, Heading, Scale, VALUES};
@@ -127,6 +126,9 @@ pub(super) struct Cells<'a> {
     pub(super) columns: &'a [Heading],
     pub(super) headings: &'a [String],
     pub(super) cells: &'a [String],
+    /// What a line above the header says of the products.
+    pub(super) stated: Option<Products>,
+    /// What they are where the table does not say it.
     pub(super) products: Option<Products>,
 }
 
@@ -152,7 +154,10 @@ impl Cells<'_> {
     }
 
     /// Cells that are not empty, under the columns of a kind.
-    fn given<T>(&self, of: impl Fn(&Heading) -> Option<T>) -> impl Iterator<Item = (T, &str)> {
+    pub(super) fn given<T>(
+        &self,
+        of: impl Fn(&Heading) -> Option<T>,
+    ) -> impl Iterator<Item = (T, &str)> {
         let pairs = self.columns.iter().zip(self.cells).filter(|(_, cell)| !is_blank(cell));
         pairs.filter_map(move |(heading, cell)| Some((of(heading)?, cell.as_str())))
     }
@@ -202,7 +207,7 @@ impl Cells<'_> {
         found.map(|((_, heading), _)| PartsProblem::NotKnown { heading: shortened(heading) })
     }
 
-    fn text(&self, wanted: Column) -> Option<&str> {
+    pub(super) fn text(&self, wanted: Column) -> Option<&str> {
         self.given(|h| (*h == Heading::Column(wanted)).then_some(())).next().map(|(_, cell)| cell)
     }
 
@@ -231,6 +236,7 @@ impl Cells<'_> {
         if self.given(says).next().is_none() {
             return Ok(None);
         }
+        let sign = self.sign()?;
         let mut values = [None; 10];
         let of = |heading: &Heading| match heading {
             Heading::Column(Column::Value(i, unit)) => Some((*i, unit.unwrap_or(1.0))),
@@ -254,7 +260,8 @@ impl Cells<'_> {
         if let Some(problem) = self.not_known(matches!(shape, Some(None)), has_six) {
             return Err(problem);
         }
-        let six = self.inertia(shape, radii, mass_kg, std::array::from_fn(|e| values[4 + e]))?;
+        let six =
+            self.inertia(shape, radii, mass_kg, std::array::from_fn(|e| values[4 + e]), sign)?;
         let [i11, i22, i33, i12, i13, i23] = six;
         let inertia = InertiaMatrix::from_entries([i11, i22, i33], [i12, i13, i23])
             .map_err(|error| PartsProblem::Shape { message: error.to_string() })?;
@@ -273,52 +280,18 @@ impl Cells<'_> {
         }))
     }
 
-    /// The shape, if there is one: none of a point.
-    fn shape(&self) -> Result<Option<Option<Shape>>, PartsProblem> {
-        let is_point = self.text(Column::Point).map(|word| boolean("point", word)).transpose()?;
-        let Some(name) = self.text(Column::Shape) else {
-            return Ok(is_point.unwrap_or_default().then_some(None));
+    /// What the products are, if anything says it.
+    fn sign(&self) -> Result<Option<Products>, PartsProblem> {
+        let Some(word) = self.text(Column::Products) else {
+            return Ok(self.stated.or(self.products));
         };
-        let name = name.to_lowercase().replace([' ', '-'], "_");
-        if name == "point" {
-            return Ok(Some(None));
+        let own = Products::of_cell(word)?;
+        if let Some(line) = self.stated.filter(|line| own.is_some_and(|own| own != *line)) {
+            let second = format!("the line \"# products = {}\"", line.name());
+            let first = format!("products = {:?}", shortened(word));
+            return Err(PartsProblem::Contradiction { first, second });
         }
-        let mut table = Map::new();
-        table.insert("shape".to_owned(), Value::from(name));
-        let of = |heading: &Heading| match heading {
-            Heading::Size(size, unit) => Some((*size, unit.unwrap_or(1.0))),
-            _ => None,
-        };
-        for ((size, si), cell) in self.given(of) {
-            let mut numbers = Vec::new();
-            for word in cell.split([' ', '×', ';', '/']).filter(|word| !word.is_empty()) {
-                let number = Number::parse(size, word, None)?.value;
-                numbers.push(Value::from(number * si));
-            }
-            let one = numbers.len() == 1;
-            let value = if one { numbers.remove(0) } else { Value::from(numbers) };
-            table.insert(size.to_owned(), value);
-        }
-        let shape: Result<Shape, _> = serde_json::from_value(Value::Object(table));
-        shape.map(|shape| Some(Some(shape))).map_err(|error| {
-            // A point is none of the shapes, which have a volume or a surface.
-            let mut message = error.to_string();
-            if message.starts_with("unknown variant") {
-                message = message.replacen("expected one of ", "expected one of `point`, ", 1);
-            }
-            // Of a number in place of several, and the other way round, the message does not say which size it is.
-            let is_several = message.contains("array of length");
-            if is_several || message.contains("sequence") {
-                let given = self.given(of).map(|((size, _), cell)| format!("{size} = {cell:?}"));
-                let given: Vec<String> = given.collect();
-                message += "; given are ";
-                message += &given.join(", ");
-            }
-            if is_several {
-                message += ", and a size of several numbers has them all in one cell, as `1 1 2`";
-            }
-            PartsProblem::Shape { message }
-        })
+        Ok(own.or(self.stated).or(self.products))
     }
 
     /// Six entries of the tensor, in the part's axes; `radii` are the moments that radii of gyration say.
@@ -328,6 +301,7 @@ impl Cells<'_> {
         radii: Option<[f64; 3]>,
         mass_kg: f64,
         given: [Option<f64>; 6],
+        sign: Option<Products>,
     ) -> Result<[f64; 6], PartsProblem> {
         let any = given.iter().flatten().any(|entry| *entry != 0.0);
         if let Some([i11, i22, i33]) = radii {
@@ -358,8 +332,6 @@ impl Cells<'_> {
                 return Err(FileBodyError::Missing { field: VALUES[4 + e] }.into());
             }
         }
-        let stated = self.text(Column::Products).map_or(Ok(None), Products::of_cell)?;
-        let sign = stated.or(self.products);
         let mut six = given.map(Option::unwrap_or_default);
         let product = (3..6).find(|e| six[*e] != 0.0);
         match (sign, product) {
@@ -476,7 +448,7 @@ impl Cells<'_> {
     }
 }
 
-fn boolean(field: &'static str, word: &str) -> Result<bool, PartsProblem> {
+pub(super) fn boolean(field: &'static str, word: &str) -> Result<bool, PartsProblem> {
     match word.to_lowercase().as_str() {
         "true" | "yes" | "1" | "t" => Ok(true),
         "false" | "no" | "0" | "f" => Ok(false),
