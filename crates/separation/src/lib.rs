@@ -64,6 +64,7 @@ mod run_error;
 mod separation;
 mod settings;
 mod snapshot;
+mod spin_axes;
 mod spring;
 mod stack;
 mod state;

@@ -3,7 +3,7 @@
 use gyradius_inertia::InertiaMatrix;
 use nalgebra::{Unit, Vector3};
 
-use crate::nutation::Range;
+use crate::{nutation::Range, spin_axes::SpinAxes};
 
 /// What became of the spin: the measures of Peck (2003, Eq. 32-37), in rad.
 ///
@@ -13,6 +13,11 @@ use crate::nutation::Range;
 /// matched to (`InertiaMatrix::principal_axes`): for a spin about body axis 1 they are the moments about
 /// the principal axes near body axes 2 and 3, for one about axis 3 those near axes 1 and 2. Neither is
 /// the larger by definition. H = Iω and E are angular momentum and rotational energy.
+///
+/// Where two moments are equal, every axis in their plane is principal, and a₁ may be the projection of s on it; where all
+/// three are, a₁ is s. Then the wobble is that angle to the plane, or zero. Moments are equal up to
+/// [`RELATIVE_TOLERANCE`](gyradius_inertia::RELATIVE_TOLERANCE) of the largest. So no measure depends on how the body axes
+/// lie in the body.
 ///
 /// ```
 /// use gyradius_inertia::InertiaMatrix;
@@ -59,22 +64,13 @@ impl SpinMetrics {
         spin_axis: &Unit<Vector3<f64>>,
         rounding: f64,
     ) -> Self {
-        let principal = inertia.principal_axes();
-        let axes = *principal.axes().matrix();
-        let along = axes.tr_mul(spin_axis.as_ref());
-        let first = along.iamax();
-        let (second, third) = ((first + 1) % 3, (first + 2) % 3);
-        let a1: Vector3<f64> = axes.column(first) * 1.0_f64.copysign(along[first]);
-        let moments = principal.moments();
-        let (i1, i2, i3) = (moments[first], moments[second], moments[third]);
-
+        let SpinAxes { axes, moments } = SpinAxes::new(inertia, spin_axis);
+        let [a1, ..] = axes;
         let momentum = inertia.matrix() * angular_velocity;
         let turns = momentum.norm() > rounding;
-        let h = axes.tr_mul(&momentum);
-        // H along a₁ and the two other axes.
-        let along_a1 = [h[first].copysign(a1.dot(&momentum)), h[second], h[third]];
         let nutation = turns.then(|| angle(&a1, &momentum));
-        let range = nutation.and_then(|now| Range::new([i1, i2, i3], along_a1, now));
+        let along = axes.map(|axis| axis.dot(&momentum));
+        let range = nutation.and_then(|now| Range::new(moments, along, now));
         let crossing = |i: usize| range.and_then(|range| Some(range.crossings?[i]));
         Self {
             spin_rate: angular_velocity.norm(),
@@ -84,7 +80,7 @@ impl SpinMetrics {
             nutation_3: crossing(1),
             nutation_bounds: range.map(|range| range.bounds),
             cone: turns.then(|| angle(spin_axis, &momentum)),
-            inertia_ratio: inertia_ratio(i1, i2, i3),
+            inertia_ratio: inertia_ratio(moments),
         }
     }
 
@@ -176,7 +172,7 @@ impl<'de> serde::Deserialize<'de> for SpinMetrics {
     }
 }
 
-fn inertia_ratio(i1: f64, i2: f64, i3: f64) -> Option<f64> {
+fn inertia_ratio([i1, i2, i3]: [f64; 3]) -> Option<f64> {
     // Moments are known to a few ε of the largest. Of a body, that moves the product by as much over the smaller of I₂ and I₃.
     let largest = i1.abs().max(i2.abs()).max(i3.abs());
     if i2.abs().min(i3.abs()) <= 1024.0 * f64::EPSILON * largest {

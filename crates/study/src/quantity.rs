@@ -134,7 +134,7 @@ quantities! {
     PayloadRate3: "payload_w3_rad_per_s", "ω₃", "rad/s", Table, |r| Some(r.end()?.separated.payload().state().angular_velocity[2]);
     /// Magnitude of the payload's angular velocity after the last release.
     SpinRate: "spin_rate_rad_per_s", "spin rate", "rad/s", Behaviour(4), |r| Some(r.end()?.spin.spin_rate());
-    /// Angle between the spin axis and the nearest principal axis, Eq. 33.
+    /// Angle between the spin axis and the nearest principal axis, Eq. 33; every axis in the plane of two equal moments is principal, and of three equal moments every axis.
     Wobble: "wobble_deg", "wobble", "deg", Behaviour(0), |r| Some(r.end()?.spin.wobble().to_degrees());
     /// Angle between the principal axis nearest to the spin axis and the angular momentum at the last release, Eq. 34; above 90 for a backward spin; none where the payload does not turn.
     Nutation: "nutation_deg", "nutation", "deg", Behaviour(1), |r| r.end()?.spin.nutation().map(f64::to_degrees);
