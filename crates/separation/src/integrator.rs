@@ -148,28 +148,27 @@ impl<const W: usize> Integrator<W> {
             None if h == reach => self.expansion.end.map(|x| x.0[lane]),
             None => self.at(lane, h),
         };
-        // Points that fly straight at each other: the equations of motion do not notice.
+        // Points that fly straight at each other: the equations of motion do not notice. The first to meet counts.
+        let mut meeting: Option<(f64, usize)> = None;
         for i in track.open().filter(|i| track.loads[*i] == Fate::Acting) {
             let events = self.expansion.loads.get(loads.slot(i));
-            if let Some(x) = events.loses_direction(lane, order, taken) {
-                return Err(self.lost_direction(lane, run, i, track.time + x * taken, x, taken));
+            if let Some(x) = events.loses_direction(lane, order, taken)
+                && meeting.is_none_or(|(earliest, _)| x < earliest)
+            {
+                meeting = Some((x, i));
             }
+        }
+        if let Some((x, load)) = meeting {
+            let (after, start) = (x * taken, track.time);
+            self.press_again(lane, run, track, after);
+            return Err(Self::lost_direction(run, load, start + after, &self.at(lane, after)));
         }
         state::normalize(&mut next);
         // No way out of the loop: it goes in vector lanes.
         if !next.iter().fold(true, |finite, x| finite & x.is_finite()) {
             return Err(self.failure(lane, track, reach));
         }
-        if taken > 0.0 {
-            // Loads that have ended and are pressed again.
-            for (i, fate) in track.loads.iter_mut().enumerate() {
-                if let Fate::Ended { pressed_again: again @ None, .. } = fate {
-                    let events = self.expansion.loads.get(loads.slot(i));
-                    let back = events.comes_back(lane, order, taken);
-                    *again = back.map(|x| track.time + x * taken);
-                }
-            }
-        }
+        self.press_again(lane, run, track, taken);
         let starts = first.is_none() && start <= until && h >= start - track.time;
         track.time = if starts { start } else { track.time + taken };
         if let Some((_, ends)) = first {
@@ -191,7 +190,7 @@ impl<const W: usize> Integrator<W> {
             let load = loads.get(i);
             if track.loads[i] == Fate::Waiting && load.start_s().is_some_and(|s| s <= track.time) {
                 if !load.can_start(&next) {
-                    return Err(self.lost_direction(lane, run, i, track.time, 1.0, taken));
+                    return Err(Self::lost_direction(run, i, track.time, &next));
                 }
                 track.loads[i] = Fate::Acting;
                 self.expansion.loads.act(loads.slot(i), lane, true);
@@ -224,19 +223,26 @@ impl<const W: usize> Integrator<W> {
         (sum, slope)
     }
 
-    /// That the force of a load has lost its direction at a time, a share of a step that was taken.
-    fn lost_direction(
-        &self,
-        lane: usize,
-        run: &Separation,
-        load: usize,
-        time: f64,
-        share: f64,
-        taken: f64,
-    ) -> RunError {
+    /// Notes the loads that have ended and are pressed again within a time from the start of a step.
+    #[inline]
+    fn press_again(&self, lane: usize, run: &Separation, track: &mut Track, taken: f64) {
+        if !(taken > 0.0) {
+            return;
+        }
+        let order = self.expansion.order[lane];
+        for (i, fate) in track.loads.iter_mut().enumerate() {
+            if let Fate::Ended { pressed_again: again @ None, .. } = fate {
+                let events = self.expansion.loads.get(run.seated().slot(i));
+                let back = events.comes_back(lane, order, taken);
+                *again = back.map(|x| track.time + x * taken);
+            }
+        }
+    }
+
+    /// That the force of a load has lost its direction, when, and in which state.
+    fn lost_direction(run: &Separation, load: usize, time: f64, state: &State) -> RunError {
         let loads = run.seated();
-        let speed = -loads.get(load).gap(&self.at(lane, 0.999 * share * taken)).rate;
-        RunError::PadsMeet { load: loads.id(load), time, speed }
+        RunError::PadsMeet { load: loads.id(load), time, speed: loads.get(load).speed(state) }
     }
 
     fn failure(&self, lane: usize, track: &Track, step: f64) -> RunError {

@@ -247,6 +247,8 @@ pub(crate) trait Seated: fmt::Debug + Send + Sync {
     fn can_start(&self, state: &State) -> bool;
     /// Where a state stands with respect to the end of the load.
     fn gap(&self, state: &State) -> Gap;
+    /// How fast its two points move past each other, m/s: where they meet, that is how fast they close.
+    fn speed(&self, state: &State) -> f64;
     /// What rounding of coordinates makes of a gap, m: it is a difference and no more accurate than they
     /// are.
     fn rounding(&self, state: &State) -> f64;

@@ -25,15 +25,16 @@ pub enum RunError {
     },
     /// The two points of a load have come together, and its force has lost its direction.
     #[error(
-        "{load}: its points meet at {time:?} s, closing at {speed:?} m/s: the line between them is \
-         the direction of the force"
+        "{load}: its points meet at {time:?} s, closing at {:?} m/s: the line between them is \
+         the direction of the force",
+        three_digits(*.speed)
     )]
     PadsMeet {
         /// The load.
         load: LoadId,
         /// When, s.
         time: f64,
-        /// How fast they came together, m/s.
+        /// How fast they come together then, m/s.
         speed: f64,
     },
     /// Steps have become too small to go on.

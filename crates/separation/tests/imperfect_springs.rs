@@ -119,6 +119,54 @@ fn a_late_spring_alone_waits() {
     assert!(through(0.9).is_ok(), "{:?}", through(0.9));
 }
 
+proptest! {
+    /// Bodies that fly at each other are slowed down by the spring between them, and meet with what speed the work of the spring
+    /// has left them: v² = v₀² − (k/μ)((x + D)² − x²), with the travel x and the distance D of the points at the start. The
+    /// speed does not depend on how the bodies turn about the line.
+    #[test]
+    fn points_meet_as_fast_as_the_spring_has_let_them(
+        sizes in prop::array::uniform3(-2.0..3.0f64),
+        shares in prop::array::uniform2(0.05..1.0f64),
+        rubs in prop_oneof![Just(0.0), 0.0..0.9f64],
+        spin in prop::array::uniform2(-3.0..3.0f64),
+        left in 0.01..10.0f64,
+        masses in prop::array::uniform2(1.0..1e3f64),
+    ) {
+        let [k, length, _] = sizes.map(|size| 10.0_f64.powf(size));
+        let (stroke, distance) = (shares[0] * length, shares[1] * length);
+        let point = |z: f64| Vector3::z() * z;
+        let spring = Spring::new(k, stroke, point(-0.5 * length), point(0.5 * length)).unwrap();
+        let spring = spring.with_friction(rubs * k * stroke).unwrap();
+        let reduced = masses[0] * masses[1] / (masses[0] + masses[1]);
+        let travel = stroke * (1.0 - rubs);
+        let slowed = k / reduced * ((travel + distance).powi(2) - travel * travel);
+        let (closing, expected) = (((1.0 + left) * slowed).sqrt(), (left * slowed).sqrt());
+        let inertia = |mass: f64| inertia([mass * length * length; 3], [0.0; 3]);
+        let moving = |mass: f64, z: f64, speed: f64, spin: f64| {
+            Body::new(mass, inertia(mass)).unwrap().moving(BodyState {
+                position: Vector3::z() * z,
+                velocity: Vector3::z() * speed,
+                angular_velocity: Vector3::z() * (spin * closing / distance),
+                ..BodyState::default()
+            })
+        };
+        let separation = Separation::new(
+            moving(masses[0], length + distance, -closing, spin[0]),
+            moving(masses[1], 0.0, 0.0, spin[1]),
+            &[spring],
+        ).unwrap();
+        let settings = Settings::new(1e-13, 1e9).unwrap();
+        let error = separation.run(&settings).unwrap_err();
+        let RunError::PadsMeet { time, speed, .. } = error else { panic!("{error}") };
+        prop_assert!((speed / expected - 1.0).abs() < 1e-4, "{speed} {expected}");
+        let digits = error.to_string();
+        let told = digits.split("closing at ").nth(1).unwrap().split(' ').next().unwrap();
+        prop_assert!((told.parse::<f64>().unwrap() / expected - 1.0).abs() < 6e-3, "{digits}");
+        prop_assert!(told.chars().filter(char::is_ascii_digit).count() < 8, "{digits}");
+        prop_assert!(time > 0.0);
+    }
+}
+
 /// A spring that fails, or is stuck, or comes too late, is as good as none.
 #[test]
 fn a_spring_that_never_pushes_is_none() {

@@ -37,6 +37,14 @@ impl SeatedSpring {
         let [payload, stage] = state::relative(state);
         self.spring.line(&payload, &stage)
     }
+
+    /// Of the payload point from the stage point, payload axes, m/s.
+    fn velocity(&self, state: &State) -> Vector3<f64> {
+        let [payload, stage] = state::relative(state);
+        let (p, l) = (self.spring.payload_point_m(), self.spring.stage_point_m());
+        payload.velocity + payload.angular_velocity.cross(&p)
+            - stage.attitude * stage.angular_velocity.cross(&l)
+    }
 }
 
 impl Seated for SeatedSpring {
@@ -55,13 +63,13 @@ impl Seated for SeatedSpring {
     }
 
     fn gap(&self, state: &State) -> Gap {
-        let [payload, stage] = state::relative(state);
-        let (p, l) = (self.spring.payload_point_m(), self.spring.stage_point_m());
-        let line = self.spring.line(&payload, &stage);
-        let velocity = payload.velocity + payload.angular_velocity.cross(&p)
-            - stage.attitude * stage.angular_velocity.cross(&l);
+        let line = self.line(state);
         let length = line.norm();
-        Gap { value: length - self.free_length, rate: line.dot(&velocity) / length }
+        Gap { value: length - self.free_length, rate: line.dot(&self.velocity(state)) / length }
+    }
+
+    fn speed(&self, state: &State) -> f64 {
+        self.velocity(state).norm()
     }
 
     fn rounding(&self, state: &State) -> f64 {
