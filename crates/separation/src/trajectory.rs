@@ -156,7 +156,8 @@ impl Trajectory {
 
 impl Separation {
     /// Integrates to the release of the last spring and on for `coast_s`, and shows every step as it
-    /// is taken, a failed run's up to the failure. The outcome is that of [`Separation::run`].
+    /// is taken. The steps of a failed run lead up to the failure, also where the points of a spring meet within a step; where
+    /// no step can be taken on, they lead to the end of the last one, and there are none if that is the first. The outcome is that of [`Separation::run`].
     ///
     /// # Errors
     /// A spring is not released within the horizon, the integration cannot go on, or the coast is
@@ -189,12 +190,19 @@ impl Separation {
             let (start, series) = (track.time, integrator.series(0));
             let pushing: SmallVec<_> = track.loads.iter().map(|f| *f == Fate::Acting).collect();
             let before = track.loads.clone();
-            let duration = integrator.advance(0, self, &mut track, end)?;
+            let advanced = integrator.advance(0, self, &mut track, end);
+            let duration = match &advanced {
+                Ok(duration) => *duration,
+                // The series is the motion up to where the points of a load meet.
+                Err(RunError::PadsMeet { time, .. }) => time - start,
+                Err(error) => return Err(error.clone()),
+            };
             let released = track.loads.iter().zip(&before).enumerate();
             let released = released.filter(|(_, (fate, was))| fate.let_go() != was.let_go());
             let released = released.map(|(i, _)| i).collect();
             let separation = self.clone();
             observer(&Step { separation, start, duration, series, pushing, released });
+            advanced?;
             let state = integrator.state(0);
             track.check(self, &state, settings)?;
             if outcome.is_none() && track.all_released() {

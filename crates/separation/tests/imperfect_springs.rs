@@ -117,6 +117,16 @@ fn a_late_spring_alone_waits() {
         through(0.8)
     );
     assert!(through(0.9).is_ok(), "{:?}", through(0.9));
+    // The motion is shown up to there: by the late spring alone, and beside one that pushes and loses its direction too.
+    let late = spring(k, stroke).starting_at(0.8).unwrap();
+    for springs in [&[late][..], &[late, spring(1e-9, 3.0)]] {
+        let mut ends = vec![];
+        let error = coaxial(springs, -1.0)
+            .follow(&Settings::default(), 0.0, |step| ends.push(step.end_s()));
+        let Err(RunError::PadsMeet { time, speed, .. }) = error else { panic!("{error:?}") };
+        assert!((time - 0.8).abs() < 1e-5 && (speed - 1.0).abs() < 1e-5, "{time} {speed}");
+        assert!((ends.last().unwrap() - time).abs() < 1e-15, "{ends:?}");
+    }
 }
 
 proptest! {
@@ -163,7 +173,17 @@ proptest! {
         let told = digits.split("closing at ").nth(1).unwrap().split(' ').next().unwrap();
         prop_assert!((told.parse::<f64>().unwrap() / expected - 1.0).abs() < 6e-3, "{digits}");
         prop_assert!(told.chars().filter(char::is_ascii_digit).count() < 8, "{digits}");
-        prop_assert!(time > 0.0);
+
+        // The motion is shown up to there.
+        let mut steps = vec![];
+        let followed = separation.follow(&settings, 1.0, |step| steps.push(step.clone()));
+        prop_assert_eq!(followed.unwrap_err(), error);
+        prop_assert!(steps.windows(2).all(|pair| pair[0].end_s() == pair[1].start_s()));
+        let last = steps.last().unwrap();
+        prop_assert!(steps[0].start_s() == 0.0 && (last.end_s() / time - 1.0).abs() < 1e-15);
+        let apart = last.at(time).loads()[0].length_m();
+        prop_assert!(apart < 1e-4 * distance, "{apart} of {distance}");
+        prop_assert!(last.released().is_empty());
     }
 }
 

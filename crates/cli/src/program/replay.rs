@@ -45,7 +45,7 @@ pub(crate) fn replay(arguments: &ReplayArgs) -> Result<ExitCode, Box<dyn Error>>
         text.push_str(&format!("{}\n", file.display()));
     }
     if files.is_empty() {
-        text.push_str("no history: there was no motion\n");
+        text.push_str("no history: no motion can be shown\n");
     }
     print(&text)?;
     Ok(ExitCode::SUCCESS)

@@ -260,6 +260,51 @@ mod tests {
         assert_eq!(animation.matches("\"from\":0.0,").count(), 2);
     }
 
+    /// A run in which the points of a spring meet is shown up to there, whether that is in its first step or a later one: the page,
+    /// the table and the animation end at the time of the failure.
+    #[test]
+    fn a_run_in_which_points_meet_is_followed_to_there() {
+        let [mut first, mut later] = [0, 0];
+        for i in 0..24 {
+            // The spring takes 0.7746 m/s.
+            let speed = 0.7747 + 0.02 * f64::from(i * i);
+            let body = |name: &str, place: f64, speed: f64| {
+                format!(
+                    "[{name}]\nmass_kg = 100.0\ninertia_kg_m2 = [[10.0, 0, 0], [0, 10.0, 0], [0, 0, 10.0]]\n\
+                     position_m = [0, 0, {place:?}]\nvelocity_m_per_s = [0, 0, {speed:?}]\n\
+                     [{name}.dispersion]\nroot_second_moment_variance_kg_m2 = [0.0, 0, 0]\naxes = \"fixed\"\n"
+                )
+            };
+            let text = format!(
+                "name = \"meeting\"\nruns = 1\n{}{}[[springs]]\nstiffness_n_per_m = 1000.0\nstroke_m = 0.1\n\
+                 payload_point_m = [0, 0, -0.95]\nstage_point_m = [0, 0, 0.95]\n\
+                 [[models]]\nname = \"own\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n",
+                body("payload", 1.0, -speed),
+                body("stage", -1.0, 0.0)
+            );
+            let scenario = Scenario::from_toml(&text).unwrap();
+            let replay = Replay::new(&scenario, None, 0, 1.0).unwrap();
+            let row = replay.row();
+            let time = row.status().split("its points meet at ").nth(1).unwrap();
+            let time: f64 = time.split(' ').next().unwrap().parse().unwrap();
+            let end = replay.history.end_s();
+            assert!((end / time - 1.0).abs() < 1e-14, "{end} {time}");
+            let page = replay.to_string();
+            assert!(page.contains("followed to ") && !page.contains("never began"), "{page}");
+            let springs = replay.history.moments.last().unwrap().now.loads();
+            assert!(springs.iter().any(|spring| spring.length_m() < 1e-4), "{springs:?}");
+            assert_eq!(replay.film.frames().last().map(|frame| frame.time_s), Some(end));
+            let folder = tempfile::tempdir().unwrap();
+            assert_eq!(replay.write(folder.path(), false).unwrap().len(), 3);
+            let settings = scenario.settings();
+            let mut steps = 0;
+            let separation = replay.case.separation.as_ref().unwrap();
+            separation.follow(settings, 0.0, |_| steps += 1).unwrap_err();
+            if steps == 1 { first += 1 } else { later += 1 }
+        }
+        assert!(first > 2 && later > 2, "{first} {later}");
+    }
+
     /// However long the coast, there are as many rows before the last release, and rows enough after it to follow the bodies
     /// as they turn, or as many as there may be.
     #[test]

@@ -210,8 +210,8 @@ impl Replay {
 
     /// Writes the history as a table and as a figure, and the animation: `history.csv`, `history.svg`,
     /// `animation.html`; returns what it wrote. A file that is there with the same content is left alone; a
-    /// link is neither followed nor replaced. If the run never began, there is nothing to write, and what is
-    /// there of another run is removed.
+    /// link is neither followed nor replaced. If the run never began, or failed before its first
+    /// step could be taken, there is nothing to write, and what is there of another run is removed.
     ///
     /// # Errors
     /// A file is there with other content and `force` is not set, or cannot be written or removed.

@@ -64,14 +64,15 @@ impl Display for Replay {
         }
         self.drawn(f)?;
         if row.failure().is_some() {
-            return match self.history.moments.last() {
-                Some(last) => writeln!(
+            return match (&self.case.separation, self.history.moments.last()) {
+                (Err(_), _) => writeln!(f, "\nit never began"),
+                (Ok(_), None) => writeln!(f, "\nit fails in its first step, and is not followed"),
+                (Ok(_), Some(last)) => writeln!(
                     f,
                     "\nfollowed to {} s, springs released by then: {}",
                     significant(last.now.time_s(), 5),
                     self.history.releases.len()
                 ),
-                None => writeln!(f, "\nit never began"),
             };
         }
 
