@@ -83,10 +83,8 @@ impl Outcome {
     /// The springs that were pressed below their free length again after they had let go, and while
     /// others still pushed or had yet to start: number from 0, and when that began, s. They stay lost.
     pub fn recompressed(&self) -> impl Iterator<Item = (usize, f64)> {
-        self.springs.iter().enumerate().filter_map(|(spring, fate)| match fate {
-            Fate::Ended { pressed_again, .. } => Some((spring, (*pressed_again)?)),
-            Fate::Failed | Fate::Waiting | Fate::Acting | Fate::Missed { .. } => None,
-        })
+        let springs = self.springs.iter().enumerate();
+        springs.filter_map(|(spring, fate)| Some((spring, fate.pressed_again()?)))
     }
 
     /// The payload after the last release.

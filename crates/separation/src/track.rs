@@ -61,6 +61,14 @@ impl Fate {
         }
     }
 
+    /// When it was pressed again after it had let go, if it was.
+    pub(crate) fn pressed_again(&self) -> Option<f64> {
+        match self {
+            Self::Ended { pressed_again, .. } => *pressed_again,
+            Self::Failed | Self::Waiting | Self::Acting | Self::Missed { .. } => None,
+        }
+    }
+
     /// When it let go; none of one that never acted.
     pub(crate) fn let_go(&self) -> Option<f64> {
         self.ended().filter(|_| matches!(self, Self::Ended { .. }))

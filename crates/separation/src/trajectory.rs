@@ -44,6 +44,7 @@ pub struct Step {
     series: [State; TERMS],
     pushing: SmallVec<[bool; INLINE_LOADS]>,
     released: SmallVec<[usize; INLINE_LOADS]>,
+    pressed_again: SmallVec<[(usize, f64); INLINE_LOADS]>,
 }
 
 impl Step {
@@ -63,6 +64,13 @@ impl Step {
     #[must_use]
     pub fn released(&self) -> &[usize] {
         &self.released
+    }
+
+    /// The springs that are pressed again within it, after they have let go and while others push or have yet to start:
+    /// number from 0, and when that begins, s. They stay lost.
+    #[must_use]
+    pub fn pressed_again(&self) -> &[(usize, f64)] {
+        &self.pressed_again
     }
 
     pub(crate) fn series(&self) -> &[State; TERMS] {
@@ -197,11 +205,22 @@ impl Separation {
                 Err(RunError::PadsMeet { time, .. }) => time - start,
                 Err(error) => return Err(error.clone()),
             };
-            let released = track.loads.iter().zip(&before).enumerate();
-            let released = released.filter(|(_, (fate, was))| fate.let_go() != was.let_go());
-            let released = released.map(|(i, _)| i).collect();
-            let separation = self.clone();
-            observer(&Step { separation, start, duration, series, pushing, released });
+            let loads = || track.loads.iter().zip(&before).enumerate();
+            let released = loads().filter(|(_, (fate, was))| fate.let_go() != was.let_go());
+            let pressed = loads().filter(|(_, (_, was))| was.pressed_again().is_none());
+            // In the coast nothing pushes any more, and all springs are lost.
+            let pressed = pressed.filter(|_| outcome.is_none());
+            observer(&Step {
+                separation: self.clone(),
+                start,
+                duration,
+                series,
+                pushing,
+                released: released.map(|(i, _)| i).collect(),
+                pressed_again: pressed
+                    .filter_map(|(i, (fate, _))| Some((i, fate.pressed_again()?)))
+                    .collect(),
+            });
             advanced?;
             let state = integrator.state(0);
             track.check(self, &state, settings)?;

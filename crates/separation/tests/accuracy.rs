@@ -152,6 +152,55 @@ fn a_spring_that_is_pressed_again_stays_lost() {
     assert_eq!(run(&paper()).recompressed().count(), 0);
 }
 
+proptest! {
+    /// Steps tell which springs are pressed again, also those of a run that a horizon cuts short: as far as it goes, they are those
+    /// that the outcome of the whole run names. In a coast, where nothing pushes any more, they tell of none.
+    #[test]
+    fn steps_tell_which_springs_are_pressed_again(
+        speed in 1.0..5.0f64,
+        arms in prop::array::uniform3(0.3..0.7f64),
+        strokes in prop::array::uniform2(-4.0..-2.0f64),
+        cut in 0.05..1.0f64,
+    ) {
+        let spring = |k: f64, stroke: f64, x: f64, y: f64| {
+            Spring::new(k, stroke, Vector3::new(x, y, -0.1), Vector3::new(x, y, 0.1)).unwrap()
+        };
+        let light = Body::new(10.0, inertia([0.1; 3], [0.0; 3])).unwrap();
+        let heavy = Body::new(1e4, inertia([1e4; 3], [0.0; 3])).unwrap();
+        let start = BodyState {
+            position: Vector3::z() * 0.3,
+            velocity: Vector3::z() * speed,
+            ..BodyState::default()
+        };
+        let [a, b] = strokes.map(|size| 10.0_f64.powf(size));
+        let springs =
+            [spring(1e3, 0.15, arms[0], 0.0), spring(1.0, a, -arms[1], 0.1), spring(1.0, b, -arms[2], -0.1)];
+        let separation =
+            Separation::new(light.moving(start), heavy.at(Vector3::zeros()), &springs).unwrap();
+        let pressed = |settings: &Settings, coast: f64| {
+            let mut all = vec![];
+            let followed = separation.follow(settings, coast, |step| {
+                let times = step.pressed_again().iter().map(|(_, time)| *time);
+                assert!(times.clone().all(|time| step.start_s() <= time && time <= step.end_s()));
+                all.extend_from_slice(step.pressed_again());
+            });
+            all.sort_by_key(|(spring, _)| *spring);
+            (followed, all)
+        };
+        let (whole, all) = pressed(&Settings::default(), 5.0);
+        let whole = whole.unwrap();
+        prop_assert_eq!(&all, &whole.recompressed().collect::<Vec<_>>());
+        let horizon = cut * whole.release_time();
+        let (failed, seen) = pressed(&Settings::new(1e-13, horizon).unwrap(), 5.0);
+        prop_assert!(matches!(failed, Err(RunError::NotReleased { .. })), "{failed:?}");
+        let all: Vec<_> = all.into_iter().filter(|(_, time)| *time < horizon).collect();
+        prop_assert_eq!(seen.len(), all.len());
+        for (a, b) in seen.iter().zip(&all) {
+            prop_assert!(a.0 == b.0 && (a.1 - b.1).abs() < 1e-9, "{a:?} {b:?}");
+        }
+    }
+}
+
 /// Back from the middle of the motion to its start.
 #[test]
 fn time_can_be_reversed() {

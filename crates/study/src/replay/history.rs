@@ -42,7 +42,6 @@ impl History {
         loads: &[(LoadId, AnyLoad)],
         outcome: Option<&Outcome>,
     ) -> Self {
-        let recompressed: Vec<_> = outcome.into_iter().flat_map(Outcome::recompressed).collect();
         let end = steps.last().map_or(0.0, Step::end_s);
         let ids: Vec<LoadId> = loads.iter().map(|(id, _)| *id).collect();
         let mut releases = Vec::new();
@@ -73,10 +72,8 @@ impl History {
                     due.push((start, format!("{id} starts")));
                 }
             }
-            for (place, time) in &recompressed {
-                if (step.start_s()..step.end_s()).contains(time) {
-                    due.push((*time, format!("{} pressed again", ids[*place])));
-                }
+            for (place, time) in step.pressed_again() {
+                due.push((*time, format!("{} pressed again", ids[*place])));
             }
             if !step.released().is_empty() {
                 let released: Vec<_> = step.released().iter().map(|place| ids[*place]).collect();
@@ -303,6 +300,59 @@ mod tests {
             if steps == 1 { first += 1 } else { later += 1 }
         }
         assert!(first > 2 && later > 2, "{first} {later}");
+    }
+
+    /// Up to a horizon that cuts it short, a run has the same events as without it: starts, releases, and springs that are
+    /// pressed again.
+    #[test]
+    fn a_run_that_fails_has_the_events_of_the_run_that_does_not() {
+        let body = |name: &str, place: f64, motion: &str| {
+            format!(
+                "[{name}]\nmass_kg = 100.0\ninertia_kg_m2 = [[10.0, 0, 0], [0, 10.0, 0], [0, 0, 10.0]]\n\
+                 position_m = [0, 0, {place:?}]\n{motion}\
+                 [{name}.dispersion]\nroot_second_moment_variance_kg_m2 = [0.0, 0, 0]\naxes = \"fixed\"\n"
+            )
+        };
+        let spring = |y: f64, from: f64, to: f64, start: f64| {
+            format!(
+                "[[springs]]\nstiffness_n_per_m = 0.1\nstroke_m = 0.05\nstart_s = {start:?}\n\
+                 payload_point_m = [0, {y:?}, {from:?}]\nstage_point_m = [0, {y:?}, {to:?}]\n"
+            )
+        };
+        let moving =
+            "velocity_m_per_s = [0, 0, -0.005]\nangular_velocity_rad_per_s = [2.0, 0, 0]\n";
+        let events = |horizon: f64| {
+            let text = format!(
+                "name = \"cut\"\nruns = 1\n{}{}{}{}[integration]\nhorizon_s = {horizon:?}\n\
+                 [[models]]\nname = \"own\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n",
+                body("payload", 1.0, moving),
+                body("stage", -1.0, ""),
+                spring(0.5, -0.95, 0.95, 0.0),
+                spring(0.0, 0.0, 1.9, 5.5),
+            );
+            let replay = Replay::new(&Scenario::from_toml(&text).unwrap(), None, 0, 0.0).unwrap();
+            let moments = replay.history.moments.iter().filter(|moment| !moment.event.is_empty());
+            let all = moments.map(|moment| (moment.now.time_s(), moment.event.clone()));
+            (replay.row().failure().is_some(), all.collect::<Vec<_>>())
+        };
+        let (failed, whole) = events(60.0);
+        assert!(
+            !failed && whole.iter().any(|(_, event)| event == "spring 1 pressed again"),
+            "{whole:?}"
+        );
+        for horizon in (1..32).map(|i| 0.5 * f64::from(i) + 0.01) {
+            let (failed, mut cut) = events(horizon);
+            let (end, last) = cut.pop().unwrap();
+            assert!(
+                failed && last == "end" && (end - horizon).abs() < 1e-12,
+                "{horizon}: {end} {last}"
+            );
+            let expected: Vec<_> = whole.iter().filter(|(time, _)| *time < horizon).collect();
+            assert_eq!(cut.len(), expected.len(), "{horizon}: {cut:?} {expected:?}");
+            for ((time, event), (later, same)) in cut.iter().zip(expected) {
+                assert!((time - later).abs() < 1e-9 && event == same, "{horizon}: {event}");
+            }
+        }
     }
 
     /// However long the coast, there are as many rows before the last release, and rows enough after it to follow the bodies
