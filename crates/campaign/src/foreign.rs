@@ -226,6 +226,15 @@ impl ForeignTable {
         Self { counting, ..self }
     }
 
+    /// What it calls a column of run tables, as the file spells it, in any letters: none if it has no such column, or several of which none is
+    /// spelled as there.
+    #[must_use]
+    pub fn spelled(&self, own: &str) -> Option<&String> {
+        let exact = self.columns.iter().find(|name| *name == own);
+        let mut alike = self.columns.iter().filter(|name| name.trim().eq_ignore_ascii_case(own));
+        exact.or_else(|| alike.next().filter(|_| alike.next().is_none()))
+    }
+
     /// Whether it is a run table of a campaign, which has the columns `model`, `run` and `status`.
     #[must_use]
     pub fn is_run_table(&self) -> bool {

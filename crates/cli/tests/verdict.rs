@@ -124,7 +124,7 @@ fn of_vehicles_the_first_flights_are_judged() {
         }
         // In any letters, but not if two columns are called so.
         let rows: String =
-            (0..450).map(|run| format!("{run},{},{},1.0,ok,{run}\n", run / 5, run % 5)).collect();
+            (0..450).map(|run| format!("{run},{},{},1.0,ok,{run},a\n", run / 5, run % 5)).collect();
         for (names, first) in [
             (["run", "vehicle", "flight"], true),
             (["RUN", "VEHICLE", "FLIGHT"], true),
@@ -135,15 +135,22 @@ fn of_vehicles_the_first_flights_are_judged() {
         ] {
             for other in ["other", "VEHICLE"] {
                 let names = names.join(",");
-                fs::write(scratch.path("letters.csv"), format!("{names},y,status,{other}\n{rows}"))
-                    .unwrap();
+                fs::write(
+                    scratch.path("letters.csv"),
+                    format!("{names},y,status,{other},model\n{rows}"),
+                )
+                .unwrap();
                 let said =
                     scratch.run(&["verdict", "letters.csv", "--require", "y <= 5 in 90 % at 90 %"]);
                 let (said, warned) =
                     (String::from_utf8(said.stdout), String::from_utf8(said.stderr));
                 let (said, warned) = (said.unwrap(), warned.unwrap());
-                let first = first && (other == "other" || names == "run,vehicle,flight");
-                if names == "RUN,VEHICLE,FLIGHT" && other == "VEHICLE" {
+                // One that is spelled as in a study is that one.
+                let spelled = names.contains("vehicle");
+                let first = first && (other == "other" || spelled);
+                if ["RUN,VEHICLE,FLIGHT", "run,craft,flight"].contains(&&*names)
+                    && other == "VEHICLE"
+                {
                     continue;
                 }
                 assert_eq!(

@@ -301,7 +301,7 @@ def test_an_inertia_for_gazebo_leaves_its_link_what_it_is(block: str, place: int
     file.write_text(f'<robot name="r">{"".join(parts)}</robot>', encoding="utf-8")
     with pytest.warns(RuntimeWarning) as told:
         found = gyradius.load(file)
-    assert list(found) == ["a", "b"] and found["a"].mass_kg == 2
+    assert list(found) == ["a", "b"] and found["a"].mass == 2
     said = [str(one.message) for one in told]
     assert len(said) == 1 and "a: its <inertial> in a block for Gazebo" in said[0] and "left out" not in said[0]
     with pytest.raises(ValueError, match="for Gazebo"):

@@ -78,14 +78,17 @@ impl Fleet {
             return Ok((table, None));
         }
         let [vehicle, flight] = Self::columns();
-        let alike = |own: &Column| table.columns().iter().find(|name| is_alike(name, own.name()));
+        let alike = |own: &Column| {
+            let is_alike = |name: &&String| name.trim().eq_ignore_ascii_case(own.name());
+            table.columns().iter().find(is_alike)
+        };
         // A column of flights alone may be any program's.
         let flights = || alike(&flight).filter(|_| table.is_run_table());
         let Some(there) = alike(&vehicle).or_else(flights) else {
             return Ok((table, None));
         };
         let [Some(run), Some(vehicle), Some(flight)] =
-            [Column::RUN, vehicle.name(), flight.name()].map(|own| named(&table, own))
+            [Column::RUN, vehicle.name(), flight.name()].map(|own| table.spelled(own).cloned())
         else {
             let lost = format!(
                 "the table has the column {there}, but not all three columns run, vehicle and flight of a study's run table, once each: all rows \
@@ -139,24 +142,12 @@ impl Fleet {
     }
 }
 
-/// Whether a heading is that of a run table's column, in any letters.
-fn is_alike(heading: &str, own: &str) -> bool {
-    heading.trim().eq_ignore_ascii_case(own)
-}
-
-/// What a table calls one of a run table's columns, in any letters: none if several are called so, and none of them in its own.
-fn named(table: &ForeignTable, own: &str) -> Option<String> {
-    let exact = table.columns().iter().find(|name| *name == own);
-    let mut alike = table.columns().iter().filter(|name| is_alike(name, own));
-    exact.or_else(|| alike.next().filter(|_| alike.next().is_none())).cloned()
-}
-
 /// That no flight stands twice in a table without a column `model`, which names its rows by their run, vehicle and flight. Of one with a model, judging
 /// tells.
 fn again(table: &ForeignTable) -> Result<(), ForeignError> {
-    let [vehicle, flight] = Fleet::columns().map(|column| named(table, column.name()));
+    let [vehicle, flight] = Fleet::columns().map(|column| table.spelled(column.name()).cloned());
     let (None, Some(run), Some(vehicle), Some(flight)) =
-        (named(table, "model"), named(table, Column::RUN), vehicle, flight)
+        (table.spelled("model"), table.spelled(Column::RUN).cloned(), vehicle, flight)
     else {
         return Ok(());
     };

@@ -1,5 +1,7 @@
 //! Which run a row of a table is, where a row is a run.
 
+use std::slice;
+
 use crate::{column::Column, foreign::ForeignTable};
 
 /// Which run a row of a table is.
@@ -16,12 +18,10 @@ pub(super) enum Numbering {
 impl Numbering {
     /// Of a table: by the column `run` if all of its cells are whole numbers.
     pub(super) fn of(table: &ForeignTable) -> Self {
-        if table.columns().iter().all(|name| name != Column::RUN) {
-            return Self::Rows;
-        }
+        let Some(run) = table.spelled(Column::RUN) else { return Self::Rows };
         let (mut all_whole, mut rises, mut last) = (true, true, None);
         // As they are written: runs that failed are among them.
-        let read = table.scan_beside(&[], &[Column::RUN.to_owned()], |columns| {
+        let read = table.scan_beside(&[], slice::from_ref(run), |columns| {
             for cell in columns.first().into_iter().flatten() {
                 let run = cell.and_then(Column::run_named);
                 all_whole &= run.is_some();

@@ -282,7 +282,8 @@ mod tests {
             let scenario = Scenario::from_toml(&text).unwrap();
             let replay = Replay::new(&scenario, None, 0, 1.0).unwrap();
             let row = replay.row();
-            let time = row.status().split("its points meet at ").nth(1).unwrap();
+            let status = row.status();
+            let time = status.split("its points meet at ").nth(1).unwrap();
             let time: f64 = time.split(' ').next().unwrap().parse().unwrap();
             let end = replay.history.end_s();
             assert!((end / time - 1.0).abs() < 1e-14, "{end} {time}");
