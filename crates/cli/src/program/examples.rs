@@ -151,7 +151,7 @@ Files are read as by `gyradius check`: a CSV with a header ixx,iyy,izz,ixy,ixz,i
 JSON or TOML; kg·m² unless the header says otherwise. At least 13 samples.
 
 Exit code: 0 if nothing speaks against the model, 1 if the samples do (the fragment is written \
-all the same) or an estimate had to be moved, 2 if something could not be read, fitted or written.";
+all the same) or an estimate had to be moved or has no law with its moments, 2 if something could not be read, fitted or written.";
 
 pub(crate) const COMPARE_EXAMPLES: &str = "\
 Examples:

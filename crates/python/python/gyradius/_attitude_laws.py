@@ -129,7 +129,7 @@ def small_rotations(mean: ArrayLike, cov: ArrayLike, *, order: str = "xyzw") -> 
     that of principal axes. The rotation is twice the vector part of its quaternion, which is the rotation vector where it is small.
 
     Rotations of more than some 15° about each axis are not small: no more than 180° can be had, and ``law.cov`` is less than what is asked
-    for. Of 30° about each axis it has 23°, and it never has more than some 28°.
+    for. Of 30° about each axis it has 23°, and it never has more than some 29°.
 
     Warns
     -----

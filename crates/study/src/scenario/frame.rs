@@ -366,7 +366,10 @@ pub(crate) fn check_seed(seed: u64) -> Result<(), ScenarioError> {
 pub(crate) fn check_name(field: &str, name: &str) -> Result<(), ScenarioError> {
     let allowed = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     // What Windows takes for devices.
-    let device = ["con", "prn", "aux", "nul"].contains(&name.to_ascii_lowercase().as_str());
+    let lower = name.to_ascii_lowercase();
+    let port = lower.strip_prefix("com").or_else(|| lower.strip_prefix("lpt"));
+    let device = ["con", "prn", "aux", "nul"].contains(&lower.as_str())
+        || port.is_some_and(|number| matches!(number.as_bytes(), [b'0'..=b'9']));
     if !name.is_empty() && name.len() <= 64 && name.chars().all(allowed) && !device {
         return Ok(());
     }

@@ -141,6 +141,7 @@ fn bad_values_name_the_field_the_value_and_what_is_allowed() {
         seed = 2003 | seed = 2003\nauthor = 12:30:00 | author: 12:30:00 is a date or a time
         seed = 2003 | seed = 12:30:00 | seed: 12:30:00 is a date or a time
         name = "peck-2003" | name = "Nul" | name: "Nul": it names a folder, and Windows reserves this name
+        name = "peck-2003" | name = "lpt9" | name: "lpt9": it names a folder, and Windows reserves this name
         matched_to = "proposed" | matched_to = "naive" | models[4].matched_to
         physical = "published" | physical = "none" | comparisons[1].physical: "none"
         physical = "published" | physical = "naive" | comparisons[1].physical: "naive"
