@@ -185,7 +185,21 @@ mod tests {
             let errors = Confidence::default().errors(freedom);
             assert!((errors - expected).abs() < 5e-4, "{freedom}: {errors}");
         }
-        assert!((Confidence::default().errors(1e9) - 1.959_963_98).abs() < 1e-6);
+        // From 1e6 on the next term of the expansion in one over the degrees of freedom is below 1e-11.
+        for level in [0.5, 0.9, 0.95, 0.999] {
+            let confidence = Confidence::new(level).unwrap();
+            let z = law::normal(confidence.tail());
+            for exponent in 6..=308 {
+                let freedom = 10_f64.powi(exponent);
+                let expected = z + (z * z * z + z) / (4.0 * freedom);
+                let found = confidence.errors(freedom);
+                assert!(
+                    (found / expected - 1.0).abs() < 1e-9,
+                    "{level} {freedom:e}: {found} {expected}"
+                );
+            }
+            assert_eq!(confidence.errors(f64::INFINITY), z);
+        }
         for freedom in [0.0, -1.0, f64::NAN] {
             assert!(Confidence::default().errors(freedom).is_nan());
         }
