@@ -95,7 +95,7 @@ impl ImportanceSampling {
             return Err(StatisticsError::TooFew { n: self.runs as usize, required: 2 });
         }
         let n = self.runs as f64;
-        let probability = self.of_hits.total() / n;
+        let probability = self.of_hits.mean(n);
         // Of hits of weight 1 alone it is above 1 by rounding.
         let probability = if probability < 1.0 + 1e-9 { probability.min(1.0) } else { probability };
         let effective_hits = self.of_hits.effective();
@@ -125,7 +125,7 @@ impl ImportanceSampling {
             effective_hits,
             effective_runs: self.all.effective(),
             largest_share: self.of_hits.largest_share(),
-            mean_weight: self.all.total() / n,
+            mean_weight: self.all.mean(n),
             warnings: Vec::new(),
         };
         estimate.warnings = estimate.seen();
@@ -137,7 +137,7 @@ impl ImportanceSampling {
     fn of_the_rest(&self, probability: f64, confidence: Confidence) -> Interval {
         let misses = self.of_misses.effective();
         let runs = if misses > 0.0 {
-            (self.runs as f64 * misses / self.of_misses.total()).min(f64::MAX)
+            (misses / self.of_misses.mean(self.runs as f64)).min(f64::MAX)
         } else {
             self.all.effective().min(self.runs as f64)
         };
@@ -184,8 +184,9 @@ impl WeightSums {
         self.squares += weight * weight;
     }
 
-    fn total(&self) -> f64 {
-        if self.sum > 0.0 { libm::exp(self.largest + libm::log(self.sum)) } else { 0.0 }
+    /// Of n runs. It is never infinite, as the total may be.
+    fn mean(&self, n: f64) -> f64 {
+        if self.sum > 0.0 { libm::exp(self.largest + libm::log(self.sum / n)) } else { 0.0 }
     }
 
     /// How many equal weights would scatter as much (Kish 1965; Kong 1992).

@@ -84,6 +84,32 @@ proptest! {
     }
 }
 
+proptest! {
+    /// Weights near the largest that is allowed have estimates that are numbers, and in proportion to those of small ones.
+    #[test]
+    fn no_estimate_overflows(
+        runs in prop::collection::vec((0.0..30.0_f64, prop::bool::weighted(0.7)), 2..400),
+        repeat in 1..30_usize,
+    ) {
+        let of = |shift: f64| {
+            let mut sums = ImportanceSampling::new();
+            for (log_weight, hit) in std::iter::repeat_n(&runs, repeat).flatten() {
+                sums.push(log_weight - 30.0 + shift, *hit).unwrap();
+            }
+            sums.finish(Confidence::default()).unwrap()
+        };
+        let (large, small) = (of(LARGEST), of(0.0));
+        let factor = libm::exp(LARGEST);
+        for (found, expected) in [
+            (large.probability(), small.probability() * factor),
+            (large.mean_weight(), small.mean_weight() * factor),
+        ] {
+            prop_assert!(found.is_finite() && (found - expected).abs() <= 1e-10 * expected, "{} {}", found, expected);
+        }
+        prop_assert!(large.interval().lower() <= large.interval().upper() && large.interval().upper().is_finite());
+    }
+}
+
 #[test]
 fn known_probabilities_are_covered() {
     // A half space: up to 1e-15.
