@@ -1,7 +1,7 @@
 //! How many failures a number of runs allows, and what that means for whom.
 
 use crate::error::{probability, share};
-use crate::verdict::{Rule, judged};
+use crate::verdict::{MAX_PLANNED, Rule, judged};
 use crate::{Confidence, StatisticsError, law};
 
 /// A requirement that at least a share p of the flights succeed, with confidence c, which a number of runs that was
@@ -24,7 +24,7 @@ use crate::{Confidence, StatisticsError, law};
 ///
 /// Tails of the binomial law are incomplete beta functions, with a relative error of some 1e-11 up to 10⁹ runs. A tail that is
 /// larger than 1 − c by a part in 10¹² or less counts as equal, so that 0.1 is one in ten. Of p = 1 − 10⁻⁹ a float knows
-/// 1 − p to a part in 10⁷.
+/// 1 − p to a part in 10⁷. More than 10¹⁵ runs are taken for 10¹⁵.
 ///
 /// ```
 /// use gyradius_statistics::{Acceptance, Confidence};
@@ -83,7 +83,7 @@ impl Acceptance {
     ///
     /// [`StatisticsError::Probability`] unless `0 ≤ success ≤ 1`.
     pub fn producers_risk(&self, runs: u64, success: f64) -> Result<f64, StatisticsError> {
-        let success = probability(success)?;
+        let (success, runs) = (probability(success)?, runs.min(MAX_PLANNED));
         Ok(self.allowed(runs).map_or(1.0, |allowed| {
             if success == 1.0 {
                 return 0.0;
@@ -95,6 +95,7 @@ impl Acceptance {
     /// The probability that a vehicle which is just not good enough passes `runs` runs, at most 1 − c; 0 if there are
     /// too few runs.
     pub fn consumers_risk(&self, runs: u64) -> f64 {
+        let runs = runs.min(MAX_PLANNED);
         self.allowed(runs).map_or(0.0, |allowed| self.at_most(allowed, runs))
     }
 
@@ -105,7 +106,7 @@ impl Acceptance {
     ///
     /// [`StatisticsError::Probability`] unless `0 ≤ power ≤ 1`.
     pub fn success_to_pass(&self, runs: u64, power: f64) -> Result<Option<f64>, StatisticsError> {
-        let power = probability(power)?;
+        let (power, runs) = (probability(power)?, runs.min(MAX_PLANNED));
         Ok(self.allowed(runs).map(|allowed| {
             if power == 0.0 {
                 return 0.0;

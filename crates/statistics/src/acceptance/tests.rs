@@ -28,6 +28,23 @@ fn known_numbers_of_runs() {
     }
 }
 
+/// Beyond 10¹⁵ runs all that is asked of a rule is what it is there.
+#[test]
+fn more_runs_than_can_be_planned_are_as_many_as_can() {
+    let most = 1_000_000_000_000_000;
+    for (probability, level) in [(0.9973, 0.9), (0.5, 0.5), (1.0 - 1e-9, 0.999)] {
+        let rule = rule(probability, level);
+        for runs in [most + 1, 2 * most, 1 << 60, u64::MAX] {
+            assert_eq!(rule.allowed_failures(runs), rule.allowed_failures(most));
+            assert_eq!(rule.consumers_risk(runs), rule.consumers_risk(most));
+            for share in [0.0, 0.3, 0.9, 0.9999, 1.0] {
+                assert_eq!(rule.producers_risk(runs, share), rule.producers_risk(most, share));
+                assert_eq!(rule.success_to_pass(runs, share), rule.success_to_pass(most, share));
+            }
+        }
+    }
+}
+
 #[test]
 fn known_risks_of_the_producer() {
     let rule = rule(0.9973, 0.9);
