@@ -11,6 +11,8 @@ pub(super) type Matrix10 = SMatrix<f64, 10, 10>;
 
 /// Rounding that an eigenvalue of the correlations may carry, and an entry of them.
 const ROUNDING: f64 = 1e-7;
+/// What the check of a covariance that has been checked may change, of a correlation.
+const WRITTEN: f64 = 1e-13;
 /// The largest number, and the smallest scale, so that products of four do not leave the range of floats.
 const MOST: f64 = 1e40;
 
@@ -270,9 +272,15 @@ gyradius_dispersion::written!(
     },
     {
         let covariance = Matrix10::from(covariance).transpose();
-        TenEstimate::new(form, mean.into(), covariance)?;
-        // As it was written: to be checked again would round it again.
-        TenEstimate { form, mean: mean.into(), covariance }
+        let checked = TenEstimate::new(form, mean.into(), covariance)?;
+        // What was written of an estimate is as it was: to be checked again would round it again.
+        let size = |i: usize| covariance[(i, i)].sqrt();
+        let is_written = covariance == covariance.transpose()
+            && (0..100).map(|k| (k / 10, k % 10)).all(|(i, j)| {
+                let change = covariance[(i, j)] - checked.covariance[(i, j)];
+                change.abs() <= WRITTEN * size(i) * size(j)
+            });
+        if is_written { TenEstimate { covariance, ..checked } } else { checked }
     }
 );
 

@@ -352,6 +352,38 @@ proptest::proptest! {
     }
 }
 
+/// What is written reads back to the bit, singular covariances too; correlations that rounding took beyond one are read as
+/// they are made.
+#[cfg(feature = "serde")]
+#[test]
+fn what_is_read_is_what_is_made() {
+    let mut rng = ChaCha8Rng::seed_from_u64(267);
+    let read = |estimate: &TenEstimate| {
+        serde_json::from_str::<TenEstimate>(&serde_json::to_string(estimate).unwrap()).unwrap()
+    };
+    let mut moved = 0;
+    for case in 0..200_usize {
+        let scale = Ten::from_fn(|_, _| 10_f64.powf(rng.random_range(-6.0..6.0)));
+        let rank = [1, 3, 10][case % 3];
+        let covariance = (0..rank).fold(Matrix10::zeros(), |sum, _| {
+            let a = scale.map(|s| s * rng.random_range(-1.0..1.0));
+            sum + a * a.transpose()
+        });
+        let form = forms()[case % 2];
+        let made = TenEstimate::new(form, scale, covariance).unwrap();
+        assert_eq!(read(&made), made);
+        let size = 1.0 + rng.random_range(1e-9..2e-8);
+        let beyond = Matrix10::from_fn(|i, j| covariance[(i, j)] * if i == j { 1.0 } else { size });
+        let Ok(expected) = TenEstimate::new(form, scale, beyond) else { continue };
+        let found = read(&made.with(&scale, &beyond));
+        let s = found.deviations();
+        let correlation = |i: usize, j: usize| found.covariance()[(i, j)] / (s[i] * s[j]);
+        assert!((0..100).all(|k| correlation(k / 10, k % 10).abs() < 1.0 + 1e-12), "{found:?}");
+        moved += usize::from(found == expected);
+    }
+    assert!(moved > 100, "{moved}");
+}
+
 /// Independent deviations of the linear ten of bodies that are small beside their distance from the origin: no law has these
 /// moments, and one that is concentrated at the mean is nearer than many. What is found is nearer still.
 #[test]
