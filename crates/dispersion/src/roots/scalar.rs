@@ -128,13 +128,14 @@ impl ScalarRoots {
         let of = |i: usize| {
             let (axis, value) = (i + 1, variances[i]);
             if !(value >= 0.0 && k[i].abs() + value.sqrt() <= MAX_ROOT) {
-                return Err(ScalarRootsError::Variance { axis, value });
+                return Err(ScalarRootsError::Variance { axis, mean: k[i], value });
             }
             law(i, k[i], value).map_err(|problem| ScalarRootsError::Law { axis, problem })
         };
         Self::new([of(0)?, of(1)?, of(2)?]).map_err(|error| match error {
             ScalarRootsError::Reach { axis } => {
-                ScalarRootsError::Variance { axis, value: variances[axis - 1] }
+                let i = axis - 1;
+                ScalarRootsError::Variance { axis, mean: k[i], value: variances[i] }
             }
             other => other,
         })
@@ -197,12 +198,14 @@ impl Distribution<RootSecondMoments> for ScalarRoots {
 pub enum ScalarRootsError {
     /// A variance is negative or NaN, or roots so large that their fourth powers would overflow.
     #[error(
-        "variance of k_{axis} = {value:?} kg·m²: it must not be negative, and no root may come out \
-         beyond {MAX_ROOT:e} √kg·m"
+        "variance of k_{axis} = {value:?} kg·m² about the mean {mean:?} √kg·m: it must not be negative, and no root may \
+         come out beyond {MAX_ROOT:e} √kg·m"
     )]
     Variance {
         /// Axis, from 1.
         axis: usize,
+        /// The mean of the root, √kg·m.
+        mean: f64,
         /// The variance, kg·m².
         value: f64,
     },
@@ -304,6 +307,12 @@ mod tests {
                 let error = law.unwrap_err();
                 assert!(matches!(error, ScalarRootsError::Variance { axis: 2, .. }), "{error}");
             }
+        }
+        // A mean that is too large is named with its variance.
+        for mean in [1e76, 1e90, 1e150] {
+            let law = ScalarRoots::normal(roots([1.0, mean, 1.0]), [0.0; 3]);
+            let told = format!("variance of k_2 = 0.0 kg·m² about the mean {mean:?} √kg·m: ");
+            assert!(law.unwrap_err().to_string().starts_with(&told));
         }
         let with = |mean: f64, variance: f64, bounds: [f64; 2]| {
             let all = [[0.0, 2.0], bounds, [0.0, 2.0]];

@@ -256,7 +256,7 @@ impl PrincipalFit {
         let mut rows: Vec<(usize, Sample)> = order.into_iter().zip(named).collect();
         rows.sort_by_key(|(row, _)| *row);
         let mean = RootSecondMoments::new(mean_roots(&roots))
-            .map_err(|_| ScalarRootsError::Variance { axis: 1, value: f64::INFINITY })?;
+            .map_err(|_| ScalarRootsError::Reach { axis: 1 })?;
         let gaussian = ScalarRoots::normal(mean, roots.map(|r| r.deviation() * r.deviation()))?;
         let law = PrincipalDispersion::new(gaussian, axes.law().clone());
         let matching = Matching { swapped, flipped, doubtful, converged: matched.converged };
@@ -354,10 +354,10 @@ fn fit(samples: Vec<Sample>) -> Result<Fitted, PrincipalFitError> {
     let roots = columns.each_ref().map(|c| RootFit::of(c, size));
     let ln_likelihood = |axes: &_| Names::of(&roots, axes).ln_likelihood(&samples);
     let (axes, height, determined) = AxesFit::of(&samples, &roots, ln_likelihood)?;
-    let out_of_range = |_| ScalarRootsError::Variance { axis: 1, value: f64::INFINITY };
+    let out_of_range = |_| ScalarRootsError::Reach { axis: 1 };
     let mean = SecondMoments::new(mean_roots(&roots).map(|k| k * k)).map_err(out_of_range)?;
     let nominal = Inertia::from_second_moments(mean, &axes.law().mean())
-        .map_err(|_| ScalarRootsError::Variance { axis: 1, value: f64::INFINITY })?;
+        .map_err(|_| ScalarRootsError::Reach { axis: 1 })?;
     Ok(Fitted { samples, nominal, roots, axes, height, determined })
 }
 
