@@ -400,11 +400,7 @@ impl Fit {
         // Half turns of the body are m ⊗ (h, 0): from tangents of the fit to those.
         let body =
             (left_multiplication(&mean).tr_mul(&frame)).fixed_view::<3, 3>(0, 0).into_owned();
-        // At the edge of the family a turn is free: as far as a law can say so.
-        let across = (place.precision + Matrix3::from_diagonal_element(SMALLEST_VARIANCE))
-            .cholesky()
-            .ok_or(FitError::Degenerate { spread: sample.scale[0] })?
-            .inverse();
+        let across = across(&place.precision);
         let turn_covariance = body * across * body.transpose() * 4.0;
         let bingham = bingham_ln_likelihood / sample.len();
         let errors = intervals::covariance(sample, best, family, bingham)
@@ -470,6 +466,17 @@ impl Fit {
     pub fn no_intervals(&self) -> Option<NoIntervals> {
         self.errors.err()
     }
+}
+
+/// The inverse of a precision. At the edge of the family a turn is free: as far as a law can say so.
+fn across(precision: &Matrix3<f64>) -> Matrix3<f64> {
+    let definite = precision + Matrix3::from_diagonal_element(SMALLEST_VARIANCE);
+    definite.cholesky().map(|factor| factor.inverse()).unwrap_or_else(|| {
+        // The least of them is rounding beside the others.
+        let found = definite.symmetric_eigen();
+        let variances = found.eigenvalues.map(|value| 1.0 / value.max(SMALLEST_VARIANCE));
+        found.eigenvectors * Matrix3::from_diagonal(&variances) * found.eigenvectors.transpose()
+    })
 }
 
 impl Errors {

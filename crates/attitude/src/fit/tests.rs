@@ -651,6 +651,49 @@ fn attitudes_without_a_maximum_are_refused() {
     degenerate(&four, "four attitudes");
 }
 
+/// Attitudes of a cluster without tails: in a cube of turns, in a ball, in a thin box, or in two boxes.
+fn without_tails(kind: usize, count: usize, edge_rad: f64, seed: u64) -> Vec<UnitQuaternion<f64>> {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let base: UnitQuaternion<f64> = crate::UniformAttitude.sample(&mut rng);
+    let turn = |rng: &mut ChaCha8Rng| {
+        let cube = Vector3::from_fn(|_, _| rng.random::<f64>() - 0.5);
+        match kind {
+            0 => cube,
+            1 => cube / cube.norm().max(0.5),
+            2 => Vector3::new(cube.x, 0.4 * cube.y, 0.1 * cube.z),
+            _ => Vector3::new(0.5_f64.copysign(cube.x) + 0.2 * cube.x, cube.y, cube.z),
+        }
+    };
+    (0..count).map(|_| base * UnitQuaternion::from_scaled_axis(turn(&mut rng) * edge_rad)).collect()
+}
+
+/// Clusters without tails are fitted by the laws of least radial variance, at the edge of the family.
+#[test]
+fn clusters_without_tails_are_fitted() {
+    let mut edge = 0;
+    for case in 0..160_usize {
+        let mut rng = ChaCha8Rng::seed_from_u64(case as u64);
+        let size = 10_f64.powf(rng.random_range(-4.0..-1.5));
+        let data = without_tails(case % 4, [13, 30, 50, 100][case / 4 % 4], size, case as u64);
+        let heights =
+            [Family::Bingham, Family::Aligned, Family::General, Family::Chosen].map(|family| {
+                let fit = RadiallyConstrainedGaussian::fit_family(&data, family);
+                let fit = fit.unwrap_or_else(|error| panic!("{case} {size} {family:?}: {error}"));
+                assert!(fit.turn_covariance().iter().all(|x| x.is_finite()));
+                let again = ln_likelihood(fit.law(), &data);
+                let gap = (again - fit.ln_likelihood()).abs() / fit.ln_likelihood();
+                assert!(gap < 1e-6, "{case} {size} {family:?}: {again} {}", fit.ln_likelihood());
+                edge += usize::from(fit.no_intervals() == Some(NoIntervals::UnboundedTurns));
+                fit.ln_likelihood()
+            });
+        assert!(
+            heights[1] >= heights[0] - 1e-6 && heights[2] >= heights[1] - 1e-6,
+            "{case} {size}: {heights:?}"
+        );
+    }
+    assert!(edge > 40, "{edge}");
+}
+
 /// Fits of a few attitudes, which the likelihood may rise about without bound or be flat, are read back as they were.
 #[cfg(feature = "serde")]
 #[test]
