@@ -1,6 +1,7 @@
 //! The likelihood of attitudes under exp(−½ xᵀPx + bᵀx), its gradient and its Hessian.
 
 use nalgebra::{Matrix4, SMatrix, UnitQuaternion, Vector4};
+use std::cmp::Ordering;
 
 use super::{
     centered::{Centered, PAIRS, PRODUCTS, STATISTICS, Statistics},
@@ -28,7 +29,8 @@ pub(crate) struct Sample {
 impl Sample {
     pub(crate) fn new(attitudes: &[UnitQuaternion<f64>]) -> Self {
         let mut frame = Matrix4::identity();
-        let mut points: Vec<Vector4<f64>> = attitudes.iter().map(|q| q.coords).collect();
+        let attitudes = sorted(attitudes);
+        let mut points = attitudes.clone();
         let mut squares = [0.25; 4];
         // A second pass in the frame of the first finds small spreads that the first has lost to
         // rounding.
@@ -40,8 +42,8 @@ impl Sample {
             let axes = Matrix4::from_columns(&order.map(|j| axes.column(j).into_owned()));
             frame *= axes;
             // From the attitudes again, as rounding must not add up.
-            for (point, q) in points.iter_mut().zip(attitudes) {
-                *point = frame.tr_mul(&q.coords);
+            for (point, q) in points.iter_mut().zip(&attitudes) {
+                *point = frame.tr_mul(q);
             }
             squares = order.map(|j| values[j].max(0.0));
         }
@@ -179,6 +181,23 @@ impl Sample {
         let hessian = ahead * means.doubt * ahead.transpose() - information;
         Evaluation { value, gradient, hessian, information }
     }
+}
+
+/// The quaternions in an order and with signs of their own, so that the same attitudes have the same fit: rounding can decide
+/// which of several maxima a search comes to.
+fn sorted(attitudes: &[UnitQuaternion<f64>]) -> Vec<Vector4<f64>> {
+    let signed = |q: &UnitQuaternion<f64>| {
+        let last = q.coords.iter().rfind(|x| **x != 0.0).copied().unwrap_or_default();
+        // A zero has a sign too.
+        q.coords * 1.0_f64.copysign(last) + Vector4::zeros()
+    };
+    let mut points: Vec<Vector4<f64>> = attitudes.iter().map(signed).collect();
+    let order = |a: &Vector4<f64>, b: &Vector4<f64>| {
+        let pairs = a.iter().zip(b.iter());
+        pairs.fold(Ordering::Equal, |order, (a, b)| order.then(a.total_cmp(b)))
+    };
+    points.sort_by(order);
+    points
 }
 
 /// Mean and covariance of the statistics under the law. At every node of the contour the w are

@@ -253,7 +253,7 @@ impl RadiallyConstrainedGaussian {
     /// # Limits
     /// At least 13 attitudes. Their quaternions must have root mean square distances from every great
     /// sphere, and from every small one that is ten times nearer, of more than 1e-7 (turns of 2e-7 rad).
-    /// Order and signs matter to rounding only. Standard errors and intervals are those of many attitudes: a few hundred where
+    /// Order and signs do not matter. Standard errors and intervals are those of many attitudes: a few hundred where
     /// there are lobes to see or nothing radial to estimate, five thousand or more for a diffuse general law;
     /// [`Fit::no_intervals`] says where there are none.
     ///

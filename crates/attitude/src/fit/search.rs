@@ -23,6 +23,8 @@ const NEARER: f64 = 0.1;
 /// The mean square of the coordinate along a mean, which is a quarter for the uniform law and greater
 /// for any with such a mean, is not below this in a sample.
 const LEAST_ALONG: f64 = 0.15;
+/// Mean square of the widest coordinate of a narrow cluster.
+const NARROW: f64 = 0.01;
 /// How many laws of two lobes, and of lobes that overlap, are climbed from.
 const LOBES: usize = 3;
 const OVERLAPPING: usize = 2;
@@ -101,7 +103,7 @@ impl<'a> Search<'a> {
         let mut best = bingham.clone();
         let mut free = ALIGNED;
         free[TAU] = true;
-        for place in self.along_axes() {
+        for place in self.along_axes().into_iter().flat_map(|place| self.tighter(place)) {
             let mut top = climb_above(self.sample, place, free, self.n, best.height);
             let greatest = *TAU_RANGE.end();
             if !(top.place.tau <= greatest) {
@@ -111,7 +113,23 @@ impl<'a> Search<'a> {
                 best = top;
             }
         }
+        if self.sample.scale[2].powi(2) < NARROW {
+            let edge = self.aligned_at(bingham, *TAU_RANGE.end());
+            if self.n * (edge.height - best.height) > SAME {
+                best = edge;
+            }
+        }
         best
+    }
+
+    /// A law, and the same with the radial variances of narrow clusters without tails: there the likelihood can have a maximum
+    /// of its own, as a law with ever less radial variance has a flatter top.
+    fn tighter(&self, place: Point) -> Vec<Point> {
+        let square = self.sample.scale[2].powi(2);
+        let own = [0.1, 1.0, 10.0].map(|part| part / (square * square));
+        let greatest = *TAU_RANGE.end();
+        let all = own.into_iter().filter(|_| square < NARROW).map(|tau| tau.min(greatest));
+        std::iter::once(place.tau).chain(all).map(|tau| Point { tau, ..place }).collect()
     }
 
     /// The most likely laws whose axes are those of the sample's second moment, the mean one of those

@@ -686,12 +686,51 @@ fn clusters_without_tails_are_fitted() {
                 edge += usize::from(fit.no_intervals() == Some(NoIntervals::UnboundedTurns));
                 fit.ln_likelihood()
             });
+        // No law of the family with another radial variance is likelier.
+        for exponent in
+            [-14.0, 4.0 * size.log10() - 2.0, 4.0 * size.log10(), 2.0 * size.log10(), -2.0]
+        {
+            let with = Family::AlignedWith { radial_variance: 10_f64.powf(exponent).max(1e-14) };
+            let fit = RadiallyConstrainedGaussian::fit_family(&data, with).unwrap();
+            assert!(
+                fit.ln_likelihood() < heights[1] + 1e-2,
+                "{case} {size} {exponent}: {} {heights:?}",
+                fit.ln_likelihood()
+            );
+        }
         assert!(
             heights[1] >= heights[0] - 1e-6 && heights[2] >= heights[1] - 1e-6,
             "{case} {size}: {heights:?}"
         );
     }
     assert!(edge > 40, "{edge}");
+}
+
+/// The same attitudes in any order and with any signs have the same fit, to the bit, of every family.
+#[test]
+fn order_and_signs_do_not_matter() {
+    for case in 0..48_usize {
+        let mut rng = ChaCha8Rng::seed_from_u64(1000 + case as u64);
+        let size = 10_f64.powf(rng.random_range(-4.0..1.0));
+        let data = without_tails(case % 4, [13, 20, 60][case / 4 % 3], size, case as u64);
+        let mut other = data.clone();
+        if case % 2 == 0 {
+            other.reverse()
+        } else {
+            other.rotate_left(5)
+        }
+        for q in &mut other {
+            if rng.random() {
+                *q = UnitQuaternion::new_unchecked(-q.into_inner());
+            }
+        }
+        let with = Family::AlignedWith { radial_variance: 0.01 };
+        for family in [Family::Chosen, Family::Bingham, with, Family::Aligned, Family::General] {
+            let [fit, again] =
+                [&data, &other].map(|all| RadiallyConstrainedGaussian::fit_family(all, family));
+            assert_eq!(fit, again, "{case} {family:?}");
+        }
+    }
 }
 
 /// Fits of a few attitudes, which the likelihood may rise about without bound or be flat, are read back as they were.
