@@ -135,7 +135,7 @@ impl Task {
         let mut compared = Vec::new();
         for (first_entry, asked, rest) in [(0, self.moments, by_axes), (3, self.products, by_roots)]
         {
-            let least = asked.least().max(self.zero());
+            let least = self.least(asked);
             let still = asked.variances().into_iter().fold(least, f64::max) * (STILL * STILL);
             let with = |by_mass: f64, e: usize, v: f64| {
                 v * (1.0 + by_mass) + by_mass * means[e] * means[e]
@@ -175,6 +175,16 @@ impl Task {
         compared
     }
 
+    /// The variance below which none of three entries matters. What a mass centre adds to moments is of second order where it adds products,
+    /// and the turns of the axes for these move the moments by more: all six that it adds to are of one size.
+    pub(super) fn least(&self, asked: Asked) -> f64 {
+        let share = if asked.is_added() { SMALL_BESIDE } else { SMALL };
+        let is_beside = |of: &Asked| *of == asked || (of.is_added() && asked.is_added());
+        let beside = [self.moments, self.products].into_iter().filter(is_beside);
+        let variances = beside.flat_map(|of| of.variances());
+        (variances.fold(0.0, f64::max) * (share * share)).max(self.zero())
+    }
+
     /// The largest error.
     pub(super) fn worst(&self, at: &Point) -> f64 {
         self.compare(at).iter().fold(0.0, |worst, it| it.error().abs().max(worst))
@@ -184,6 +194,10 @@ impl Task {
 impl Asked {
     pub(super) fn is_stated(&self) -> bool {
         matches!(self, Self::Stated(_))
+    }
+
+    fn is_added(&self) -> bool {
+        matches!(self, Self::Added(_))
     }
 
     pub(super) fn variances(&self) -> [f64; 3] {
@@ -205,15 +219,6 @@ impl Asked {
 
     pub(super) fn mean_variance(&self) -> f64 {
         self.variances().iter().sum::<f64>() / 3.0
-    }
-
-    /// The variance below which none matters.
-    pub(super) fn least(&self) -> f64 {
-        let share = match self {
-            Self::Nothing | Self::Stated(_) => SMALL,
-            Self::Added(_) => SMALL_BESIDE,
-        };
-        self.variances().into_iter().fold(0.0, f64::max) * (share * share)
     }
 }
 
@@ -259,6 +264,33 @@ mod tests {
                 let most = 1.1 * axes + 3.0 * added + 1e-4 * nominal.matrix().trace();
                 prop_assert!(found < most, "{e}: {found} {axes} {added}");
             }
+        }
+
+        /// A mass centre that is off across the arm adds a product, and to the moments next to nothing: the product comes out.
+        #[test]
+        fn a_centre_across_the_arm_adds_its_product(
+            k in prop::array::uniform3(1.0..10.0_f64),
+            axes in prop::sample::select(vec![[0, 1], [1, 0], [0, 2], [2, 0], [1, 2], [2, 1]]),
+            arm in 0.3..3.0_f64,
+            turn in 0.003..0.1_f64,
+        ) {
+            let [a, b] = axes;
+            // So far off that the axes turn by so much.
+            let gap = (k[a] - k[b]).abs();
+            prop_assume!(gap > 0.3);
+            let mass = 10.0;
+            let off = turn * gap / (mass * arm);
+            let nominal = Inertia::from_second_moments(
+                SecondMoments::new(k).unwrap(),
+                &UnitQuaternion::identity(),
+            ).unwrap();
+            let along = |axis: usize, x: f64| std::array::from_fn(|i| if i == axis { x } else { 0.0 });
+            let centre = CentreStatement::new(along(a, off), 1.0, along(b, arm)).unwrap();
+            let model = Statements { centre: Some(centre), ..Statements::default() };
+            let model = model.model(&nominal, Some(mass)).unwrap();
+            let product = 2 + a + b;
+            let (found, wanted) = (model.implied().deviations()[product], mass * arm * off);
+            prop_assert!((found / wanted - 1.0).abs() < 0.03, "{found} {wanted}");
         }
     }
 }

@@ -260,7 +260,7 @@ fn moved_together(task: &Task, roots: &Vector3<f64>) -> Matrix3<f64> {
     // A root near zero moves by its square.
     let slope = |i: usize| 2.0 * (k[i] * k[i] + roots[i] * roots[i]).sqrt();
     let moved = Matrix3::from_fn(|a, i| (1.0 - r[(i, a)] * r[(i, a)]) * slope(i));
-    let least = task.moments.least().max(task.zero());
+    let least = task.least(task.moments);
     let asked = Vector3::from(task.moments.variances()).map(|v| (v + least).sqrt());
     // About axes that are tilted so that all moments move alike, it need only be invertible.
     let svd = moved.svd(true, true);
