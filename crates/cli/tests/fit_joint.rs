@@ -252,3 +252,56 @@ fn what_is_no_estimate_is_refused() {
     let (code, _, message) = run(&folder, &["fit"]);
     assert!(code == 2 && message.contains("FILE"), "{message}");
 }
+
+/// Masses of which nothing is taken are named in every form: as a column of a CSV, and as a key of the others.
+#[test]
+fn masses_that_are_not_fitted_are_named() {
+    let folder = TempDir::new().unwrap();
+    for masses in [0..0, 0..30, 7..8, 29..30] {
+        let bodies: Vec<(Option<f64>, [f64; 3])> = (0..30)
+            .map(|i| {
+                let x = f64::from(i);
+                let mass = masses.contains(&i).then_some(10.0 + x);
+                (mass, [5.0 + 0.03 * (x % 7.0), 4.0 + 0.02 * (x % 5.0), 3.0 + 0.01 * (x % 3.0)])
+            })
+            .collect();
+        let json = bodies.iter().map(|(mass, [a, b, c])| {
+            let mass = mass.map_or(String::new(), |mass| format!("\"mass_kg\": {mass}, "));
+            format!("{{{mass}\"inertia_kg_m2\": [[{a}, 0, 0], [0, {b}, 0], [0, 0, {c}]]}}")
+        });
+        let json = json.collect::<Vec<_>>().join(",\n");
+        let toml: String = bodies
+            .iter()
+            .map(|(mass, [a, b, c])| {
+                let mass = mass.map_or(String::new(), |mass| format!("mass_kg = {mass}\n"));
+                format!("[[body]]\n{mass}inertia_kg_m2 = [[{a:?}, 0.0, 0.0], [0.0, {b:?}, 0.0], [0.0, 0.0, {c:?}]]\n")
+            })
+            .collect();
+        for (name, text) in [("it.json", format!("[{json}]")), ("it.toml", toml)] {
+            fs::write(folder.path().join(name), &text).unwrap();
+            let (_, json, _) = run(&folder, &["fit", name, "--format", "json"]);
+            let found: Value = serde_json::from_str(&json).unwrap();
+            let unread: Vec<&str> = found["unread"]
+                .as_array()
+                .unwrap()
+                .iter()
+                .map(|told| told.as_str().unwrap())
+                .collect();
+            assert_eq!(found["samples"], 30, "{name}");
+            assert_eq!(unread.len(), usize::from(!masses.is_empty()), "{name}: {unread:?}");
+            let (_, report, _) = run(&folder, &["fit", name]);
+            assert_eq!(
+                report.contains("nothing was taken from mass_kg"),
+                !masses.is_empty(),
+                "{report}"
+            );
+            if let [told] = unread.as_slice() {
+                // A body stands in the line of its inertia.
+                let mut lines =
+                    (1..).zip(text.lines()).skip_while(|(_, line)| !line.contains("mass_kg"));
+                let (line, _) = lines.find(|(_, line)| line.contains("inertia_kg_m2")).unwrap();
+                assert!(told.starts_with(&format!("line {line}: ")), "{told}");
+            }
+        }
+    }
+}

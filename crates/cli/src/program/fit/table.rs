@@ -235,7 +235,16 @@ fn of_rows(file: &InertiaFile, place: &str, form: Option<TenForm>) -> Result<Giv
         Ok(row)
     };
     let rows = file.bodies().iter().map(row).collect::<Result<_, _>>()?;
-    let unread = file.gaps().iter().map(|gap| format!("line {}: {gap}", gap.line())).collect();
+    let gaps = file.gaps().iter().map(|gap| format!("line {}: {gap}", gap.line()));
+    let mut unread: Vec<String> = gaps.collect();
+    // Of a CSV, the column is among those of which nothing was taken.
+    let has_mass = |body: &&FileBody| file.format() != Format::Csv && body.mass_kg().is_some();
+    unread.extend(file.bodies().iter().find(has_mass).map(|body| {
+        let line = body.line();
+        format!(
+            "line {line}: nothing was taken from mass_kg: masses are fitted with mass centres, which only a CSV or a robot has"
+        )
+    }));
     Ok(Given { rows, whole: ten.is_some(), unused, unread })
 }
 
