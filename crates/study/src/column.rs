@@ -98,7 +98,8 @@ impl Column {
                 Text,
                 "Why there is no clearance (all outlines are mated; the search failed), or not one of the \
                  whole coast (a body turns too far to be followed), or that the outlines come nearer before the \
-                 last release, or that some are mated and do not part; none if there is nothing to say.",
+                 last release, or that some are mated and do not part; all that hold, with `; ` between them; none if \
+                 there is nothing to say.",
             )
             .with_kinds(),
         }
@@ -133,10 +134,13 @@ impl Column {
             }
             Self::Drawn(i) => run.case.drawn.get(i).copied().into(),
             Self::ClearanceNote => {
-                run.end().and_then(End::clearance_note).map_or(Cell::Null, |note| Cell::Note {
-                    kind: note.kind().into(),
-                    text: note.to_string().into(),
-                })
+                let notes = run.end().map(End::clearance_notes).unwrap_or_default();
+                if notes.is_empty() {
+                    return Cell::Null;
+                }
+                let kinds: Vec<_> = notes.iter().map(|note| note.kind()).collect();
+                let texts: Vec<_> = notes.iter().map(ToString::to_string).collect();
+                Cell::Note { kind: kinds.join("; ").into(), text: texts.join("; ").into() }
             }
         }
     }

@@ -168,9 +168,9 @@ impl<'a> End<'a> {
         self.clearance()?.closest()
     }
 
-    /// Why there is no clearance, or not one of the whole coast; none if there is nothing to say.
-    pub(crate) fn clearance_note(&self) -> Option<ClearanceNote> {
-        self.watched.as_ref().and_then(ClearanceNote::new)
+    /// What there is to say of the clearance; nothing if it is that of the whole motion.
+    pub(crate) fn clearance_notes(&self) -> Vec<ClearanceNote> {
+        self.watched.as_ref().map_or_else(Vec::new, ClearanceNote::all)
     }
 
     /// Loads in the order of their releases, `+` between those that let go together.
@@ -203,7 +203,7 @@ impl<'a> End<'a> {
     }
 }
 
-/// Why a run has no clearance, or not one of its whole coast.
+/// Why a run has no clearance, or not one of its whole motion: several may hold.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum ClearanceNote {
     /// All outlines touch at the start, part, and do not touch again.
@@ -240,27 +240,27 @@ pub(crate) enum ClearanceNote {
 }
 
 impl ClearanceNote {
-    /// What there is to say of a clearance.
-    pub(crate) fn new(found: &Result<Watched, ClearanceError>) -> Option<Self> {
+    /// All that there is to say of a clearance.
+    fn all(found: &Result<Watched, ClearanceError>) -> Vec<Self> {
         let watched = match found {
             Ok(watched) => watched,
-            Err(error) => return Some(Self::NotFound(*error)),
+            Err(error) => return vec![Self::NotFound(*error)],
         };
         let clearance = watched.clearance();
-        if let Some(until) = clearance.undecided_from_s() {
-            return Some(Self::Partial { until });
-        }
-        if let Some(nearest) = watched.nearer_before() {
-            let (distance, time) = (nearest.distance_m(), nearest.time_s());
-            return Some(Self::NearerBefore { distance, time });
-        }
+        let partial = clearance.undecided_from_s().map(|until| Self::Partial { until });
+        let nearer = watched.nearer_before().map(|nearest| Self::NearerBefore {
+            distance: nearest.distance_m(),
+            time: nearest.time_s(),
+        });
         let parted = clearance.shapes().iter().all(|s| s.counts_from_s().is_some());
-        match (clearance.closest().is_some(), parted) {
+        let mated = match (clearance.closest().is_some(), parted) {
             (true, true) => None,
             (true, false) => Some(Self::SomeTogether),
             (false, true) => Some(Self::Mated),
             (false, false) => Some(Self::Together),
-        }
+        };
+        // Up to when the bodies are followed comes first, for what is said of the outlines holds until then.
+        [partial, nearer, mated].into_iter().flatten().collect()
     }
 
     /// What kind it is, without numbers, so that those of a kind can be counted.

@@ -1,7 +1,12 @@
 //! Runs of scenarios with mated hulls and antennas, backward spins, late and failing springs.
 
 use super::*;
-use crate::{Quantity, Row, Table, column::CLEARANCE_NOTE, model::Model, study::all_runs};
+use crate::{
+    Cell, Quantity, Row, Table,
+    column::{CLEARANCE_NOTE, Column},
+    model::Model,
+    study::all_runs,
+};
 
 /// When a spring lets go, springs from 0.
 fn release(spring: usize) -> Quantity {
@@ -116,6 +121,66 @@ fn outlines_that_do_not_part_are_told() {
             assert_eq!(row.text(CLEARANCE_NOTE), Some(note.to_string().as_str()));
         }
     }
+}
+
+/// Bodies that turn too far to be followed through the coast, that are nearer while the spring waits than afterwards, and of which some
+/// outlines do not part: every note stands, whatever else is true.
+#[test]
+fn all_notes_of_a_clearance_are_told() {
+    let mut seen = std::collections::BTreeSet::new();
+    // To watch mated outlines through thousands of turns takes many seconds.
+    for i in (0..8).filter(|i| i & 5 != 5) {
+        let [turns, late, mated] = [1, 2, 4].map(|bit| i & bit != 0);
+        let turning = if turns { 1.0 } else { f64::from(u8::from(late)) / 600.0 };
+        let body = |name: &str, place: f64, inertia: &str, rate: [f64; 3]| {
+            format!(
+                "[{name}]\nmass_kg = 100.0\ninertia_kg_m2 = {inertia}\nposition_m = [0, 0, {place:?}]\n\
+                 angular_velocity_rad_per_s = {:?}\n[{name}.dispersion]\n\
+                 root_second_moment_variance_kg_m2 = [0.0, 0, 0]\naxes = \"fixed\"\n",
+                rate.map(|rate| rate * turning)
+            )
+        };
+        // All of the payload is in it, and stays there.
+        let around = "[-4, -4, -4], [4, -4, -4], [-4, 4, -4], [4, 4, -4], [-4, -4, 4], [4, -4, 4], [-4, 4, 4], [4, 4, 4]";
+        let text = format!(
+            "name = \"notes\"\nruns = 1\n{}{}\
+             [[springs]]\nstiffness_n_per_m = 0.002\nstroke_m = 0.05\nstart_s = {:?}\n\
+             payload_point_m = [0, 0, 0]\nstage_point_m = [0, 0, 0.01]\n\
+             [clearance]\ncoast_s = {:?}\n\
+             payload = [{{ points_m = [[0.8, 0.3, 0.2], [-0.8, 0.5, 0.1], [0.1, -0.9, -0.2], [0.2, 0.1, 0.5]] }}]\n\
+             stage = [{{ hull_m = [[0.8, 0.3, 0.1], [-0.7, 0.5, -0.2], [-0.1, -0.9, 0.2], [0.1, 0.1, -0.5]] }}{}]\n\
+             [integration]\nhorizon_s = 5000.0\n[[models]]\nname = \"own\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n",
+            body("payload", 1.15, "[[30.0, 1, 0], [1, 25.0, 0], [0, 0, 20.0]]", [60.0, 18.0, 12.0]),
+            body("stage", -1.2, "[[30.0, 0, 2], [0, 40.0, 0], [2, 0, 20.0]]", [-30.0, 6.0, -12.0]),
+            if late { 20.0 } else { 0.0 },
+            if turns { 600.0 } else { 60.0 },
+            if mated { format!(", {{ hull_m = [{around}] }}") } else { String::new() },
+        );
+        let scenario = Scenario::from_toml(&text).unwrap();
+        let case = Case::nominal(&scenario);
+        let run = case.ended(&scenario, Some(scenario.separation().run(scenario.settings())));
+        let (note, kind) = match Column::ClearanceNote.cell(&run) {
+            Cell::Note { kind, text } => (text, kind),
+            other => (other.to_string().into(), String::new().into()),
+        };
+        let starts = ["followed to ", "the outlines come nearer", "some outlines are mated"];
+        let told =
+            starts.map(|start| note.split("; ").filter(|one| one.starts_with(start)).count());
+        let kinds = ["a body turns too far", "the outlines come nearer", "some outlines are mated"];
+        assert_eq!(kinds.map(|one| kind.matches(one).count()), told, "{note} {kind}");
+        // What is told of one thing does not depend on the others.
+        let watched = run.end().unwrap().watched.as_ref().unwrap().as_ref().unwrap();
+        let expected = [
+            watched.clearance().undecided_from_s().is_some(),
+            watched.nearer_before().is_some(),
+            watched.clearance().shapes().iter().any(|shapes| shapes.counts_from_s().is_none()),
+        ];
+        assert_eq!(told, expected.map(usize::from), "{note}");
+        assert_eq!((expected[0], expected[2]), (turns, mated), "{note}");
+        seen.insert(expected);
+    }
+    let pairs = [[true, true, false], [false, true, true]];
+    assert!(pairs.iter().all(|pair| seen.contains(pair)) && seen.len() >= 4, "{seen:?}");
 }
 
 /// 12 rad/s for 600 s: all but the clearance of the whole coast is known, and the row stays.

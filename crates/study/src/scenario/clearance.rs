@@ -295,7 +295,7 @@ mod tests {
             match (stroke < 1e-3, others.is_empty()) {
                 (true, true) => {
                     assert_eq!(found, None, "{:?}", end.clearance());
-                    assert!(end.clearance_note().is_some());
+                    assert!(!end.clearance_notes().is_empty());
                 }
                 (false, true) => assert!((found.unwrap() - stroke).abs() < 1e-6, "{found:?}"),
                 // The point on the axis of the ring is 0.3 m from it all around.
