@@ -156,13 +156,14 @@ impl Display for Replay {
                     line(&format!("  {}", shapes(s)), approach(s), "")?;
                 }
             }
-            let touch = Quantity::RecontactTime.in_row(&row);
-            let touch = match (touch, clearance.undecided_from_s()) {
+            let touch = match (Quantity::RecontactTime.in_row(&row), clearance.undecided_from_s()) {
                 (Some(time), _) => format!("at {time:.9} s"),
                 (None, Some(until)) => format!("none up to {until} s, and it is not known after"),
-                (None, None) => "none".to_owned(),
+                (None, None) => {
+                    format!("none up to {} s after the last release", outlines.coast_s())
+                }
             };
-            line(&format!("recontact within {} s", outlines.coast_s()), touch, "")?;
+            line("recontact", touch, "")?;
         }
         line("energy of the springs", value(Quantity::SpringEnergy), " J")?;
         let both = |a, b| format!("{} and {}", value(a), value(b));
