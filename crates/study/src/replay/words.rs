@@ -111,8 +111,10 @@ impl Display for Replay {
             let unit = if value == "–" { "" } else { unit };
             write!(f, "\n  {what:42}{value}{unit}")
         };
-        let nutation = |now, least, greatest| {
-            format!("{}° in [{}°, {}°]", value(now), value(least), value(greatest))
+        let nutation = |now: Quantity, least, greatest| match now.in_row(&row) {
+            Some(_) => format!("{}° in [{}°, {}°]", value(now), value(least), value(greatest)),
+            // The payload does not turn.
+            None => value(now),
         };
         line("relative speed", value(Quantity::RelativeSpeed), " m/s")?;
         line("relative velocity, inertial axes", three(Quantity::RELATIVE_VELOCITY), " m/s")?;
@@ -195,5 +197,38 @@ impl Replay {
             writeln!(f, "  {:width$}{value:>14}{nominal:>14}{sigmas:>14}", d.column)?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Replay, Scenario};
+
+    /// Angles that a payload without spin does not have are left out with their units, whatever else the page tells.
+    #[test]
+    fn what_there_is_not_has_no_unit() {
+        for spin in [0.0, 1e-3, 2.0] {
+            let body = |name: &str, place: f64, spin: f64| {
+                format!(
+                    "[{name}]\nmass_kg = 100.0\ninertia_kg_m2 = [[10.0, 0, 0], [0, 11.0, 0], [0, 0, 12.0]]\n\
+                     position_m = [0, 0, {place:?}]\nangular_velocity_rad_per_s = [0, 0.1, {spin:?}]\n\
+                     [{name}.dispersion]\nroot_second_moment_variance_kg_m2 = [0.0, 0, 0]\naxes = \"fixed\"\n"
+                )
+                .replace("[0, 0.1, 0.0]", "[0, 0, 0]")
+            };
+            let text = format!(
+                "name = \"straight\"\nruns = 1\n{}{}[[springs]]\nstiffness_n_per_m = 1000.0\nstroke_m = 0.1\n\
+                 payload_point_m = [0, 0, -0.95]\nstage_point_m = [0, 0, 0.95]\n\
+                 [[models]]\nname = \"own\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n",
+                body("payload", 1.0, spin),
+                body("stage", -1.0, 0.0)
+            );
+            let replay = Replay::new(&Scenario::from_toml(&text).unwrap(), None, 0, 1.0).unwrap();
+            let page = replay.to_string();
+            assert!(!page.contains("–°") && !page.contains("[–"), "{page}");
+            let told =
+                page.lines().find(|line| line.trim_start().starts_with("nutation, and its bounds"));
+            assert_eq!(told.unwrap().ends_with(" –"), spin == 0.0, "{page}");
+        }
     }
 }
