@@ -421,7 +421,7 @@ fn bad_dispersions_are_named() {
     }
 }
 
-/// The pads of the last spring are its free length apart as it lets go, wherever mass centres are: the
+/// The pads of the last spring are its release length apart as it lets go, wherever mass centres are: the
 /// outlines stay with the structure.
 #[test]
 fn outlines_stay_with_the_structure() {

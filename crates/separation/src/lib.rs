@@ -1,7 +1,7 @@
 //! Two rigid bodies pushed apart by springs.
 //!
 //! A payload sits on a stage; compressed springs act between fixed points of the two bodies, each
-//! along the line between its points, until it reaches its free length and is lost for good. This
+//! along the line between its points, until it reaches its release length and is lost for good. This
 //! crate integrates the motion to the last release at full precision ([`Separation::run`], many at a
 //! time in a [`Batch`], with all that lies between as a [`Trajectory`]) and says what became of it
 //! ([`Outcome`]: relative velocity, tip-off rates, releases, energy split) and of the payload's spin
@@ -14,8 +14,8 @@
 //! * A body's attitude takes body components to inertial components (`nalgebra`'s `q * v`);
 //!   angular velocity is in body axes.
 //! * Springs push: with s the vector from stage point to payload point, the force on the payload
-//!   is +k(L₀ − |s|) s/|s| and on the stage its opposite, torques r × F likewise. The free length
-//!   L₀ is the initial distance of the two points plus the stroke. Springs may have friction, start
+//!   is +k(L₀ − |s|) s/|s| and on the stage its opposite, torques r × F likewise. The release length
+//!   L₀ is the initial distance of the two points plus the stroke; a friction f makes it f/k shorter. Springs may start
 //!   late or fail ([`Spring::with_friction`], [`Spring::starting_at`], [`Spring::never_pushing`]).
 //!
 //! ```

@@ -45,9 +45,8 @@ impl LoadState {
         self.length
     }
 
-    /// How far it is short of its end, m, whether it pushes or not: of a spring, the length at which it lets go
-    /// less its length; with a friction f it lets go f/k short of its free length. Of a spring that never pushes, its
-    /// free length less its length.
+    /// How far it is short of its end, m, whether it pushes or not: of a spring, its
+    /// [release length](crate::Separation::release_lengths) less its length.
     #[must_use]
     pub fn compression_m(&self) -> f64 {
         self.compression

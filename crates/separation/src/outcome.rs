@@ -67,20 +67,20 @@ impl Outcome {
     }
 
     /// When each spring let go, s, in the order of the springs. None for a spring that never pushed:
-    /// it failed, could not overcome its friction, or was late and came to its free length before its
+    /// it failed, could not overcome its friction, or was late and came to its release length before its
     /// start.
     pub fn release_times(&self) -> impl ExactSizeIterator<Item = Option<f64>> {
         self.springs.iter().map(Fate::let_go)
     }
 
     /// From when on no spring can push, s: when the last one let go, or, where a late one never pushed,
-    /// came to its free length. The bodies are told as they are then.
+    /// came to its release length. The bodies are told as they are then.
     #[must_use]
     pub fn release_time(&self) -> f64 {
         self.springs.iter().filter_map(Fate::ended).fold(0.0, f64::max)
     }
 
-    /// The springs that were pressed below their free length again after they had let go, and while
+    /// The springs that were pressed below their release length again after they had let go, and while
     /// others still pushed or had yet to start: number from 0, and when that began, s. They stay lost.
     pub fn recompressed(&self) -> impl Iterator<Item = (usize, f64)> {
         let springs = self.springs.iter().enumerate();

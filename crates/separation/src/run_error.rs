@@ -8,7 +8,7 @@ use crate::{LoadId, load::named};
 pub enum RunError {
     /// Loads still act at the horizon.
     #[error(
-        "{} had not let go after {horizon:?} s: {} {}is {:?} m short of its free length and grows by {:?} m/s",
+        "{} had not let go after {horizon:?} s: {} {}is {:?} m short of its release length and grows by {:?} m/s",
         named(.loads), .loads[0], unstarted(*.start), three_digits(*.compression), three_digits(*.rate)
     )]
     NotReleased {

@@ -89,7 +89,7 @@ fn kinds(between: &str) -> String {
 /// println!("{separation}");
 /// assert!((separation.stored_energy() - 500.0).abs() < 1e-12);
 /// // The points are 0.2 m apart, and the stroke is 0.1 m.
-/// assert!(separation.free_lengths().all(|free| (free - 0.3).abs() < 1e-15));
+/// assert!(separation.release_lengths().all(|free| (free - 0.3).abs() < 1e-15));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -100,9 +100,8 @@ pub struct Separation {
 }
 
 impl Separation {
-    /// Puts bodies and loads together: springs, or [`AnyLoad`]. The free length of each spring is the distance of its
-    /// points in the given states plus its stroke, less what friction takes of that: where it ceases to
-    /// push.
+    /// Puts bodies and loads together: springs, or [`AnyLoad`]. The release length of each spring, at which it lets
+    /// go, is the distance of its points in the given states plus its stroke, less f/k with a friction f and a stiffness k.
     ///
     /// # Errors
     /// A state is not finite, there is no load that pushes, or a load's points touch.
@@ -193,9 +192,9 @@ impl Separation {
         self.loads.springs().iter().map(Seated::load)
     }
 
-    /// Free length of each spring, m: where it ceases to push.
-    pub fn free_lengths(&self) -> impl ExactSizeIterator<Item = f64> {
-        self.loads.springs().iter().map(SeatedSpring::free_length_m)
+    /// Release length of each spring, m: where it lets go. Of a spring that can never push, friction is left out.
+    pub fn release_lengths(&self) -> impl ExactSizeIterator<Item = f64> {
+        self.loads.springs().iter().map(SeatedSpring::release_length_m)
     }
 
     /// Energy that the loads hold at the start, J.
@@ -260,7 +259,10 @@ mod tests {
         for none in [[stuck, stuck], [stuck, spring(0.2).never_pushing()]] {
             assert!(matches!(with(&none), Err(SeparationError::NonePushes)));
         }
-        assert_eq!(with(&[stuck, spring(0.2)]).unwrap().free_lengths().nth(1).unwrap(), 0.2 + 0.1);
+        assert_eq!(
+            with(&[stuck, spring(0.2)]).unwrap().release_lengths().nth(1).unwrap(),
+            0.2 + 0.1
+        );
         let nearly = spring(0.2).with_friction(0.1 * (1.0 - 1e-9)).unwrap();
         assert!(matches!(
             with(&[nearly]),
@@ -272,7 +274,7 @@ mod tests {
             Err(SeparationError::ShortStroke { load, .. }) if load == id(0)
         ));
         let ok = with(&[spring(1e-5)]).unwrap();
-        assert!((ok.free_lengths().next().unwrap() - 0.10001).abs() < 1e-15);
+        assert!((ok.release_lengths().next().unwrap() - 0.10001).abs() < 1e-15);
     }
 
     #[test]

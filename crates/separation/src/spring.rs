@@ -137,7 +137,7 @@ impl Spring {
     }
 
     /// The same spring, let off `start_s` after the clamp opens. It exerts no force before, and none
-    /// at all if its points have come to be its free length apart by then.
+    /// at all if its points have come to be its release length apart by then.
     ///
     /// # Errors
     /// The start is negative or not finite.

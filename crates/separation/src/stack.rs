@@ -397,7 +397,7 @@ mod tests {
             for found in [Stack::from(&nominal), stack] {
                 let found = found.separation().unwrap();
                 prop_assert!(found.springs().eq(nominal.springs()));
-                prop_assert!(found.free_lengths().eq(nominal.free_lengths()));
+                prop_assert!(found.release_lengths().eq(nominal.release_lengths()));
                 prop_assert_eq!((found.payload(), found.stage()), (nominal.payload(), nominal.stage()));
             }
         }

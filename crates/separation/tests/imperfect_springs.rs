@@ -91,7 +91,7 @@ fn a_late_spring_alone_waits() {
     let outcome = coaxial(&[late], speed).run(&Settings::default()).unwrap();
     near(outcome.relative_speed(), speed.hypot(left * w), 1e-12);
     near(outcome.release_time(), start + left.atan2(speed / w) / w, 1e-12);
-    // Too late: the points are a free length apart after 2 s. It never lets go, for it never pushed.
+    // Too late: the points are a release length apart after 2 s. It never lets go, for it never pushed.
     let outcome = coaxial(&[late], 0.1).run(&Settings::default()).unwrap();
     assert_eq!(outcome.release_times().collect::<Vec<_>>(), [None]);
     assert!(outcome.release_order().is_empty());

@@ -86,7 +86,7 @@ impl Column {
             Self::Recompressed => RunColumn::new(
                 RECOMPRESSED,
                 Text,
-                "Springs from 1 that were pressed below their free length after their release, while \
+                "Springs from 1 that were pressed below their release length after their release, while \
                  others still pushed or had yet to start; none if there is no such spring.",
             ),
             Self::Drawn(i) => {

@@ -289,7 +289,7 @@ mod tests {
             let angle = line.cross(&nominal).norm().atan2(line.dot(&nominal)).to_degrees();
             assert!((angle - f64::hypot(a, b)).abs() < 1e-12, "{angle}");
             near(s.springs().next().unwrap().stage_point_m(), [1.0, 1.0, 0.9]);
-            assert!((s.free_lengths().next().unwrap() - 0.3).abs() < 1e-15);
+            assert!((s.release_lengths().next().unwrap() - 0.3).abs() < 1e-15);
         }
         // About the stage's axes 1 and 2: right-handed.
         let sin = 0.2 * 0.1_f64.sin();

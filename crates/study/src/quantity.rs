@@ -122,7 +122,7 @@ quantities! {
     StageI13: "stage_i13", "I₁₃", "kg·m²", Drawn, |r| Some(r.inertia(Body::Stage)[4]);
     /// Entry 23 of the stage's inertia matrix as drawn, about its mass centre, body axes.
     StageI23: "stage_i23", "I₂₃", "kg·m²", Drawn, |r| Some(r.inertia(Body::Stage)[5]);
-    /// From when on no spring can push: when the last one let go, or, late, came to its free length.
+    /// From when on no spring can push: when the last one let go, or, late, came to its release length.
     ReleaseTime: "release_time_s", "release time", "s", Parting(10), |r| Some(r.end()?.separated.release_time());
     /// Speed at which the mass centres part.
     RelativeSpeed: "relative_speed_m_per_s", "relative speed", "m/s", Parting(0), |r| Some(r.end()?.separated.relative_speed());

@@ -31,7 +31,7 @@ impl Problem<'_> {
     }
 
     fn gap(&self, y: &State, spring: usize) -> f64 {
-        self.line(y, spring)[0].norm() - self.separation.free_lengths().nth(spring).unwrap()
+        self.line(y, spring)[0].norm() - self.separation.release_lengths().nth(spring).unwrap()
     }
 }
 
@@ -45,7 +45,7 @@ impl ODE<f64, State> for Problem<'_> {
             let (p, l) = (rp * spring.payload_point_m(), rl * spring.stage_point_m());
             let line = vector(y, 0) + p - l;
             let length = line.norm();
-            let free = self.separation.free_lengths().nth(i).unwrap();
+            let free = self.separation.release_lengths().nth(i).unwrap();
             let push = line * (spring.stiffness_n_per_m() * (free - length) / length);
             force += push;
             tp += p.cross(&push);

@@ -12,12 +12,12 @@ use crate::{
 /// Points nearer than this share of the stroke count as touching.
 pub(crate) const TOUCHING: f64 = 1e-6;
 
-/// A spring whose free length is known: the distance of its points at the start plus its stroke, less what
+/// A spring whose release length is known: the distance of its points at the start plus its stroke, less what
 /// friction takes of that, where it ceases to push.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SeatedSpring {
     spring: Spring,
-    free_length: f64,
+    release_length: f64,
 }
 
 impl SeatedSpring {
@@ -25,11 +25,11 @@ impl SeatedSpring {
     pub(crate) fn new(spring: Spring, distance: f64) -> Self {
         // One that never pushes only has its place.
         let stroke = if spring.can_push() { spring.travel_m() } else { spring.stroke_m() };
-        Self { spring, free_length: distance + stroke }
+        Self { spring, release_length: distance + stroke }
     }
 
-    pub(crate) fn free_length_m(&self) -> f64 {
-        self.free_length
+    pub(crate) fn release_length_m(&self) -> f64 {
+        self.release_length
     }
 
     /// From the stage point to the payload point, payload axes, m.
@@ -65,7 +65,7 @@ impl Seated for SeatedSpring {
     fn gap(&self, state: &State) -> Gap {
         let line = self.line(state);
         let length = line.norm();
-        Gap { value: length - self.free_length, rate: line.dot(&self.velocity(state)) / length }
+        Gap { value: length - self.release_length, rate: line.dot(&self.velocity(state)) / length }
     }
 
     fn speed(&self, state: &State) -> f64 {
@@ -91,7 +91,7 @@ impl Seated for SeatedSpring {
             travel,
             force: spring.stiffness_n_per_m() * travel,
             arms: [spring.payload_point_m().norm(), spring.stage_point_m().norm()],
-            distance: self.free_length - travel,
+            distance: self.release_length - travel,
         }
     }
 
@@ -99,7 +99,7 @@ impl Seated for SeatedSpring {
         // Not of the two positions, which may be large.
         let line = self.line(state);
         let length = line.norm();
-        let compression = self.free_length - length;
+        let compression = self.release_length - length;
         let stiffness = if acts { self.spring.stiffness_n_per_m() } else { 0.0 };
         LoadState {
             pushing: acts,

@@ -52,7 +52,7 @@ pub(crate) struct SpringSeries<const W: usize> {
     /// The stiffness of those that push, and of those that do not.
     pub(super) built: Lanes<W>,
     pub(super) stroke: Lanes<W>,
-    pub(super) free_length: Lanes<W>,
+    pub(super) release_length: Lanes<W>,
     payload_point: V3<W>,
     stage_point: V3<W>,
     /// What s² stays below and above as far as the series is good.
@@ -86,7 +86,7 @@ impl<const W: usize> Series<W> for SpringSeries<W> {
             stiffness: zero,
             built: zero,
             stroke: zero,
-            free_length: zero,
+            release_length: zero,
             payload_point: vector,
             stage_point: vector,
             upper: zero,
@@ -104,7 +104,7 @@ impl<const W: usize> Series<W> for SpringSeries<W> {
         let spring = seated.load();
         self.built.0[lane] = spring.stiffness_n_per_m();
         self.stroke.0[lane] = spring.stroke_m();
-        self.free_length.0[lane] = seated.free_length_m();
+        self.release_length.0[lane] = seated.release_length_m();
         for axis in 0..3 {
             self.payload_point[axis].0[lane] = spring.payload_point_m()[axis];
             self.stage_point[axis].0[lane] = spring.stage_point_m()[axis];
@@ -170,7 +170,7 @@ impl<const W: usize> Series<W> for SpringSeries<W> {
         for term in self.terms[..order].iter().rev() {
             sum = sum * time + term.square;
         }
-        let beyond = sum.zip(self.free_length, |s, l| if s >= l * l { 1.0 } else { 0.0 });
+        let beyond = sum.zip(self.release_length, |s, l| if s >= l * l { 1.0 } else { 0.0 });
         beyond * self.stiffness.map(|k| if k == 0.0 { 0.0 } else { 1.0 })
     }
 
@@ -252,9 +252,9 @@ impl<const W: usize> SpringSeries<W> {
         let of = |x: Lanes<W>| self.stiffness.zip(x, |k, x| if k == 0.0 { 0.0 } else { x });
         let inverse = of(Lanes::splat(1.0) / self.terms[0].square.sqrt());
         self.inverse_square = inverse * inverse;
-        let push = self.stiffness * (self.free_length * inverse);
+        let push = self.stiffness * (self.release_length * inverse);
         self.terms[0].push = push;
         self.half_push = push * 0.5;
-        self.first_push = self.stiffness * (self.free_length * inverse - Lanes::splat(1.0));
+        self.first_push = self.stiffness * (self.release_length * inverse - Lanes::splat(1.0));
     }
 }

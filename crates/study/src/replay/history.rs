@@ -67,7 +67,7 @@ impl History {
             for (place, (id, load)) in loads.iter().enumerate() {
                 let start = load.start_s().unwrap_or(0.0);
                 let starts = start > 0.0 && (step.start_s()..step.end_s()).contains(&start);
-                // One that has come to its free length by then does not.
+                // One that has come to its release length by then does not.
                 if starts && step.at(start).loads()[place].is_pushing() {
                     due.push((start, format!("{id} starts")));
                 }

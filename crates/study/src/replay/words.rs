@@ -87,7 +87,7 @@ impl Display for Replay {
                 None if load.can_push() => {
                     write!(
                         f,
-                        "\n  {number} comes to its free length before it starts, and never pushes"
+                        "\n  {number} comes to its release length before it starts, and never pushes"
                     )?;
                 }
                 None => write!(f, "\n  {number} never pushes")?,

@@ -22,7 +22,7 @@ fn the_built_in_scenario_is_the_papers() {
     let names: Vec<&str> = s.model_names().collect();
     assert_eq!(names, ["proposed", "published", "naive", "naive-matched"]);
     assert!((s.separation().stored_energy() - 1300.0).abs() < 1e-9);
-    assert!((s.separation().free_lengths().next().unwrap() - 0.3).abs() < 1e-15);
+    assert!((s.separation().release_lengths().next().unwrap() - 0.3).abs() < 1e-15);
 }
 
 #[test]
