@@ -459,7 +459,7 @@ pub(crate) fn inputs(scenario: &impl Subject, head: &Head, sketch: Option<Drawin
     let (kept, toml) = (scenario.kept(), scenario.to_toml());
     let version = &head.gyradius_version;
     let origin = Text::from(format!(
-        "Run by gyradius {version} from the scenario below, every default spelled out; its SHA-256 is "
+        "Run by gyradius {version} from the scenario below, defaults filled in; its SHA-256 is "
     ))
     .code(&head.fingerprint)
     .plain(". The same scenario gives the same numbers on any number of threads");

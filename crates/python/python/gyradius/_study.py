@@ -108,7 +108,7 @@ class Study:
 
     @property
     def scenario(self) -> str:
-        """The resolved scenario as a TOML file, every default spelled out."""
+        """The resolved scenario as a TOML file, defaults filled in."""
         return self._done.scenario
 
     @property

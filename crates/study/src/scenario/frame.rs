@@ -167,7 +167,8 @@ macro_rules! framed {
                 self.models.iter().map(|model| model.name.as_str())
             }
 
-            /// The resolved scenario as a TOML file, every default spelled out: enough to run it again.
+            /// The resolved scenario as a TOML file, defaults filled in: enough to run it again. Keys that it leaves out
+            /// mean what `docs/scenario.md` says of keys that are left out.
             #[must_use]
             pub fn to_toml(&self) -> String {
                 // Numbers, strings and tables of them always serialize.
