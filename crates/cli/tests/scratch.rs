@@ -105,8 +105,9 @@ pub(crate) fn judged(json: &Value) -> Vec<Value> {
     for judged in &mut all {
         let judged = judged.as_object_mut().unwrap();
         judged.remove("model");
-        // What a study alone knows: what was drawn.
+        // What a study alone knows: what was drawn, and when a rule looked.
         judged.remove("unusual");
+        judged.remove("counted_at_looks");
         judged["requirement"].as_object_mut().unwrap().remove("name");
     }
     all

@@ -221,7 +221,7 @@ impl RealizabilityReport {
                 && faults.iter().all(|fault| of_entries(fault) && fault.is_one());
         };
         let least = k.into_iter().fold(f64::INFINITY, f64::min);
-        let sum: f64 = moments.into_iter().map(|i| i.abs()).sum();
+        let sum: f64 = moments.into_iter().map(f64::abs).sum();
         // Smaller moments have fewer digits than the margin.
         let is_margin = if sum > 1e-290 && sum.is_finite() {
             (margin - least / sum).abs() < 1e-9

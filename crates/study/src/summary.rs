@@ -19,11 +19,10 @@ use crate::{
     model::Model,
     quantity::Quantity,
     regions::RegionSummary,
-    rounding::Rounding,
     run::Case,
     scenario::{Dispersed, Each, ModelLaw, Scenario, Target},
     seen::Seen,
-    subject::{Summarized, head_of},
+    subject::{Subject, Summarized, head_of},
     unusual::DrawnInput,
 };
 
@@ -424,7 +423,7 @@ impl ModelSummary {
         let backwards =
             Alert::backwards(name, seen.backwards, parted, scenario.outlines().is_some());
         let first = failed.into_iter().chain(backwards).chain(unmoved);
-        first.chain(Alert::heavy_tails(name, heavy, Rounding::OF_SEPARATIONS)).chain(near).collect()
+        first.chain(Alert::heavy_tails(name, heavy, Scenario::ROUNDING)).chain(near).collect()
     }
 
     /// What its runs draw, the entries of the inertias too.

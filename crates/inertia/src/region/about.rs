@@ -131,10 +131,10 @@ fn weights(points: &[Vector3<f64>]) -> Option<Vec<f64>> {
         let place = if towards { far } else { near };
         let best = (squares[place] - 4.0) / (4.0 * (squares[place] - 1.0));
         let all = -weights[place] / (1.0 - weights[place]);
-        let emptied = !towards && !(squares[place] > 1.0 && best > all);
-        let step = if emptied { all } else { best };
+        let has_best = towards || squares[place] > 1.0 && best > all;
+        let step = if has_best { best } else { all };
         weights.iter_mut().for_each(|weight| *weight *= 1.0 - step);
-        weights[place] = if emptied { 0.0 } else { weights[place] + step };
+        weights[place] = if has_best { weights[place] + step } else { 0.0 };
     }
     Some(weights)
 }
@@ -310,7 +310,7 @@ mod tests {
             let turn = UnitQuaternion::from_scaled_axis(Vector3::from(turn));
             let pose = Isometry3::from_parts(Translation3::from(Vector3::from(middle) * size), turn);
             let corner = |i: usize| Vector3::from_fn(|axis, _| if i >> axis & 1 == 0 { -half[axis] } else { half[axis] });
-            let tip = |i: usize| Vector3::ith(i / 2, if i % 2 == 0 { -half[i / 2] } else { half[i / 2] });
+            let tip = |i: usize| Vector3::ith(i / 2, if i.is_multiple_of(2) { -half[i / 2] } else { half[i / 2] });
             let box_ = Region::solid_box(Vector3::zeros(), half).unwrap();
             let ellipsoid = Region::ellipsoid(Vector3::zeros(), half).unwrap();
             for (region, points) in [(box_, (0..8).map(corner).collect()), (ellipsoid, (0..6).map(tip).collect::<Vec<_>>())] {
