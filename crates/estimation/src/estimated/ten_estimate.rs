@@ -12,6 +12,7 @@ pub(super) type Matrix10 = SMatrix<f64, 10, 10>;
 /// Rounding that an eigenvalue of the correlations may carry, and an entry of them.
 const ROUNDING: f64 = 1e-7;
 /// What the check of a covariance that has been checked may change, of a correlation.
+#[cfg(feature = "serde")]
 const WRITTEN: f64 = 1e-13;
 /// The largest number, and the smallest scale, so that products of four do not leave the range of floats.
 const MOST: f64 = 1e40;
