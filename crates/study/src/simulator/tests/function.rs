@@ -401,7 +401,7 @@ fn kept_columns_are_those_of_the_tables() {
                 .collect();
             assert_eq!((kept.model(), kept.len()), (table.model(), expected.len()));
             assert_eq!(kept.is_empty(), rows == Rows::None);
-            let own = ["model", "run", "status", "status_kind"];
+            let own = ["model", "run", "status", "status_kind", "vehicle", "flight"];
             let named = |name: &str| {
                 columns.as_ref().is_none_or(|c| own.contains(&name) || c.contains(&name.to_owned()))
             };
