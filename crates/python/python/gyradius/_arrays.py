@@ -74,8 +74,8 @@ def unmasked(name: str, value: Any) -> None:
         raise ValueError(f"{name}: some of its entries are masked")
 
 
-def numbers(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    """The value as an array of aligned 64-bit floats, without a copy where it is one."""
+def own_numbers(name: str, value: ArrayLike) -> NDArray[Any]:
+    """The value as an array of real numbers of the type that it has."""
     unmasked(name, value)
     try:
         array = np.asarray(value)
@@ -85,6 +85,12 @@ def numbers(name: str, value: ArrayLike) -> NDArray[np.float64]:
         raise ValueError(f"{name}: it must be numbers, not {array.dtype}")
     if array.dtype.kind == "c":
         raise ValueError(f"{name}: it must be real numbers, not {array.dtype}")
+    return array
+
+
+def numbers(name: str, value: ArrayLike) -> NDArray[np.float64]:
+    """The value as an array of aligned 64-bit floats, without a copy where it is one."""
+    array = own_numbers(name, value)
     # What stands at odd addresses, as a field of packed records does, the compiled part cannot read.
     return np.require(array.astype(np.float64, copy=False), requirements="A")
 

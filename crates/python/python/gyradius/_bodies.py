@@ -13,9 +13,21 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import attitudes, flag, floating, folder_or_file, frozen, numbers, ordered, out, rows, together
+from gyradius._arrays import (
+    attitudes,
+    flag,
+    floating,
+    folder_or_file,
+    frozen,
+    numbers,
+    ordered,
+    out,
+    own_numbers,
+    rows,
+    together,
+)
 from gyradius._arrays import form as _form
-from gyradius._inertia import is_narrow, is_realizable, of_rounded
+from gyradius._inertia import is_realizable, of_rounded
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -81,8 +93,9 @@ class MassProperties:
     _array: NDArray[np.float64]
 
     def __init__(self, mass: ArrayLike, centre: ArrayLike, inertia: ArrayLike) -> None:
-        parts, lead = together(("mass", mass, ()), ("centre", centre, (3,)), ("inertia", inertia, (3, 3)))
-        if is_narrow(inertia):
+        given = own_numbers("inertia", inertia)
+        parts, lead = together(("mass", mass, ()), ("centre", centre, (3,)), ("inertia", given, (3, 3)))
+        if given.dtype == np.float32:
             parts[2] = of_rounded(parts[2].reshape(-1, 3, 3)).reshape(-1, 9)
         self._set(_core.body_of_parts(*parts).reshape(*lead, 10))
 
@@ -94,7 +107,7 @@ class MassProperties:
         """The bodies of an array of shape (..., 10), in the order of `gyradius.COLUMNS`."""
         flat, lead = rows("array", array, (10,))
         bodies = flat.copy()
-        if is_narrow(array):
+        if own_numbers("array", array).dtype == np.float32:
             rounded = of_rounded(bodies[:, MATRIX].reshape(-1, 3, 3))
             bodies[:, 4:] = np.stack([rounded[:, i, j] for i, j in ENTRIES], axis=1)
         return cls._of(bodies.reshape(*lead, 10))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import ordered, out, real, rows, text
+from gyradius._arrays import ordered, out, own_numbers, real, rows, text
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -44,8 +44,9 @@ def is_realizable(inertia: ArrayLike, tolerance: Real | None = None) -> Any:
     >>> gyradius.is_realizable([np.diag([1.0, 2.0, 3.1]), np.diag([1.0, 1.0, 1.0])])
     array([False,  True])
     """
-    flat, lead = rows("inertia", inertia, (3, 3))
-    found = out(_core.inertia_is_realizable(flat, _tolerance(tolerance, inertia)), lead)
+    given = own_numbers("inertia", inertia)
+    flat, lead = rows("inertia", given, (3, 3))
+    found = out(_core.inertia_is_realizable(flat, _tolerance(tolerance, given.dtype)), lead)
     return bool(found) if lead == () else found
 
 
@@ -117,8 +118,9 @@ def report(inertia: ArrayLike, tolerance: Real | None = None) -> Report:
     >>> print(gyradius.report(np.diag([1.0, 2.0, 3.3])))
     not realizable: I33 = 3.3 kg·m² exceeds the sum of the others, 1 + 2 kg·m², by 10.00 %
     """
-    flat, lead = rows("inertia", inertia, (3, 3))
-    allowed = _tolerance(tolerance, inertia)
+    given = own_numbers("inertia", inertia)
+    flat, lead = rows("inertia", given, (3, 3))
+    allowed = _tolerance(tolerance, given.dtype)
     # In pieces, between which Python sees an interrupt.
     pieces = (flat[first : first + PIECE] for first in range(0, max(len(flat), 1), PIECE))
     found = [one for piece in pieces for one in _core.inertia_report(piece, allowed)]
@@ -185,14 +187,9 @@ def nearest(
     return out(_core.inertia_nearest(flat, text("method", method)), (*lead, 3, 3), dtype)
 
 
-def is_narrow(values: ArrayLike) -> bool:
-    """Whether they come in 32 bits."""
-    return np.asarray(values).dtype == np.float32
-
-
 def of_rounded(inertia: NDArray[np.float64]) -> NDArray[np.float64]:
     """Inertias that were rounded to 32 bits: the nearest of some body in the place of those that only this rounding took from all bodies."""
-    lost = ~is_realizable(inertia) & is_realizable(inertia, 64.0 * float(np.finfo(np.float32).eps))
+    lost = ~is_realizable(inertia) & is_realizable(inertia, _tolerance(None, np.dtype(np.float32)))
     if not lost.any():
         return inertia
     found = inertia.copy()
@@ -265,10 +262,9 @@ def _transposed_rotation(xyzw: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.moveaxis(np.array(entries), 2, 0)
 
 
-def _tolerance(tolerance: Real | None, inertia: ArrayLike) -> float | None:
-    """What is said; otherwise 64 units in the last place of the numbers, of which the compiled part knows those of 64 bits."""
+def _tolerance(tolerance: Real | None, dtype: np.dtype[Any]) -> float | None:
+    """What is said; otherwise 64 units in the last place of numbers of this type, of which the compiled part knows those of 64 bits."""
     if tolerance is None:
-        dtype = np.asarray(inertia).dtype
         return 64.0 * float(np.finfo(dtype).eps) if dtype.kind == "f" and dtype.itemsize < 8 else None
     found = real("tolerance", tolerance)
     if not 0.0 <= found < np.inf:
