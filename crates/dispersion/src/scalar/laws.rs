@@ -818,25 +818,19 @@ impl Law for Beta {
     }
 
     fn cdf(&self, x: f64) -> f64 {
-        if x >= self.high {
-            1.0
-        } else if x <= self.low {
-            0.0
-        } else {
-            let width = self.high - self.low;
-            self.below.share((x - self.low) / width, (self.high - x) / width)
+        if self.low == self.high {
+            return step(self.low, x);
         }
+        let width = self.high - self.low;
+        self.below.share((x - self.low) / width, (self.high - x) / width)
     }
 
     fn share_above(&self, x: f64) -> f64 {
-        if x >= self.high {
-            0.0
-        } else if x <= self.low {
-            1.0
-        } else {
-            let width = self.high - self.low;
-            self.below.swapped().share((self.high - x) / width, (x - self.low) / width)
+        if self.low == self.high {
+            return 1.0 - step(self.low, x);
         }
+        let width = self.high - self.low;
+        self.below.swapped().share((self.high - x) / width, (x - self.low) / width)
     }
 
     fn ln_density(&self, x: f64) -> Option<f64> {
