@@ -230,9 +230,14 @@ impl ForeignTable {
     /// spelled as there.
     #[must_use]
     pub fn spelled(&self, own: &str) -> Option<&String> {
-        let exact = self.columns.iter().find(|name| *name == own);
-        let mut alike = self.columns.iter().filter(|name| name.trim().eq_ignore_ascii_case(own));
+        let mut alike = self.alike(own);
+        let exact = self.alike(own).find(|name| *name == own);
         exact.or_else(|| alike.next().filter(|_| alike.next().is_none()))
+    }
+
+    /// The columns that are called as one of run tables is, in any letters.
+    pub fn alike(&self, own: &str) -> impl Iterator<Item = &String> {
+        self.columns.iter().filter(move |name| is_alike(name, own))
     }
 
     /// Whether it is a run table of a campaign, which has the columns `model`, `run` and `status`.
@@ -331,8 +336,12 @@ fn status(columns: &[String]) -> Option<usize> {
 /// Where a column of the run tables of studies is, which a copy may have in other letters: the first of several.
 fn place_of(columns: &[String], own: &Column) -> Option<usize> {
     let exact = columns.iter().position(|name| name == own.name());
-    let is_alike = |name: &String| name.trim().eq_ignore_ascii_case(own.name());
-    exact.or_else(|| columns.iter().position(is_alike))
+    exact.or_else(|| columns.iter().position(|name| is_alike(name, own.name())))
+}
+
+/// Whether a heading is that of a run table's column, in any letters.
+fn is_alike(heading: &str, own: &str) -> bool {
+    heading.trim().eq_ignore_ascii_case(own)
 }
 
 /// Why a table cannot be read.

@@ -78,10 +78,7 @@ impl Fleet {
             return Ok((table, None));
         }
         let [vehicle, flight] = Self::columns();
-        let alike = |own: &Column| {
-            let is_alike = |name: &&String| name.trim().eq_ignore_ascii_case(own.name());
-            table.columns().iter().find(is_alike)
-        };
+        let alike = |own: &Column| table.alike(own.name()).next();
         // A column of flights alone may be any program's.
         let flights = || alike(&flight).filter(|_| table.is_run_table());
         let Some(there) = alike(&vehicle).or_else(flights) else {

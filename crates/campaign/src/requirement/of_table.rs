@@ -45,10 +45,9 @@ impl Judgement {
         // Of runs that have something in common it must be known which they are.
         let of_groups = group > 1;
         let numbering = if of_groups { Numbering::AnyOrder } else { Numbering::of(table) };
-        let run_column = table.spelled(Column::RUN).filter(|_| numbering.is_by_column());
-        // Whose rows are to be told apart and does not say which they are is refused by its name.
-        let own = || numbering.is_by_column().then(|| Column::RUN.to_owned());
-        let run_column: Vec<String> = run_column.cloned().or_else(own).into_iter().collect();
+        // A table of groups that has no such column is refused by the name that it should have.
+        let run = || table.spelled(Column::RUN).cloned().unwrap_or_else(|| Column::RUN.to_owned());
+        let run_column: Vec<String> = numbering.is_by_column().then(run).into_iter().collect();
         let new_groups = |r: &Requirement| Groups::new(group, r.probability());
         let mut groups: Vec<Groups> =
             if of_groups { requirements.iter().map(new_groups).collect() } else { Vec::new() };
