@@ -84,6 +84,8 @@ pub(super) fn read(
 ) -> Result<Table, TableError> {
     let file = InertiaFile::read(path, products)?;
     let place = path.display().to_string();
+    let gaps = file.gaps().iter().map(|gap| format!("line {}: {gap}", gap.line()));
+    let gaps: Vec<String> = gaps.collect();
     let given = match file.format() {
         Format::Urdf | Format::Mjcf | Format::Sdf => of_links(file, &place, form)?,
         Format::Csv | Format::Toml | Format::Json => of_rows(&file, &place, form)?,
@@ -96,7 +98,7 @@ pub(super) fn read(
         rounded: 0,
         bodies: whole.then(Vec::new),
         unused,
-        unread,
+        unread: [gaps, unread].concat(),
     };
     let mut refused: Option<(usize, usize, String)> = None;
     for (index, Row { line, matrix, ten }) in rows.into_iter().enumerate() {
@@ -171,6 +173,7 @@ struct Given {
     /// Whether each has a mass and a mass centre.
     whole: bool,
     unused: Vec<String>,
+    /// Beside the gaps of the file.
     unread: Vec<String>,
 }
 
@@ -180,9 +183,7 @@ fn of_links(file: InertiaFile, place: &str, form: Option<TenForm>) -> Result<Giv
         return Err(TableError::NotLinear { place: place.to_owned() });
     }
     let robot = RobotFile::try_from(file)?;
-    let gaps = robot.gaps().iter().map(|gap| format!("line {}: {gap}", gap.line()));
-    let mut unread: Vec<String> = gaps.collect();
-    let mut rows = Vec::with_capacity(robot.links().len());
+    let (mut rows, mut unread) = (Vec::with_capacity(robot.links().len()), Vec::new());
     for link in robot.links() {
         let line = link.line();
         match link.numbers() {
@@ -235,16 +236,15 @@ fn of_rows(file: &InertiaFile, place: &str, form: Option<TenForm>) -> Result<Giv
         Ok(row)
     };
     let rows = file.bodies().iter().map(row).collect::<Result<_, _>>()?;
-    let gaps = file.gaps().iter().map(|gap| format!("line {}: {gap}", gap.line()));
-    let mut unread: Vec<String> = gaps.collect();
     // Of a CSV, the column is among those of which nothing was taken.
     let has_mass = |body: &&FileBody| file.format() != Format::Csv && body.mass_kg().is_some();
-    unread.extend(file.bodies().iter().find(has_mass).map(|body| {
+    let unread = file.bodies().iter().find(has_mass).map(|body| {
         let line = body.line();
         format!(
             "line {line}: nothing was taken from mass_kg: masses are fitted with mass centres, which only a CSV or a robot has"
         )
-    }));
+    });
+    let unread = unread.into_iter().collect();
     Ok(Given { rows, whole: ten.is_some(), unused, unread })
 }
 
