@@ -63,6 +63,8 @@ pub(crate) enum Alert {
     OffAxis { angle_deg: f64, spin_axis: [f64; 3] },
     /// The mean of a law is far from the nominal value that the same scenario states.
     FarFromNominal { quantity: String, nominal: f64, mean: f64 },
+    /// The mean of the law of a mass centre is far from the nominal one, from which it is told.
+    CentreOffNominal { body: String, mean_m: [f64; 3] },
     /// The fourth moment of outcomes is large.
     HeavyTails {
         model: String,
@@ -222,6 +224,16 @@ impl Alert {
                     significant(*nominal, 4),
                     significant(*mean, 4)
                 )),
+            Self::CentreOffNominal { body, mean_m } => {
+                let metres = mean_m.map(|x| significant(x, 4)).join(", ");
+                Text::default()
+                    .strong(format!("The mass centre of the {body} is far from the nominal one"))
+                    .plain(format!(
+                        ": the mean of its law is ({metres}) m. A scenario tells the mass centre from the nominal one, along body \
+                         axes; a law that was made elsewhere may tell it from the origin of its own samples. Then take the \
+                         nominal mass centre off its means."
+                    ))
+            }
             Self::HeavyTails { model, outcomes } => heavy_tails(&[(model, outcomes)]),
             Self::NearBoundary { model, body, near, drawn, margin } => {
                 let share = significant(100.0 * *near as f64 / *drawn as f64, 3);

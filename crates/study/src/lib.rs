@@ -45,6 +45,7 @@ mod head;
 mod loads;
 mod model;
 mod naming;
+mod off_nominal;
 mod options;
 mod quantity;
 mod rare;

@@ -17,6 +17,7 @@ use crate::{
     faults::GivenFault,
     head::Head,
     model::Model,
+    off_nominal::off_nominal,
     quantity::Quantity,
     regions::RegionSummary,
     run::Case,
@@ -232,7 +233,7 @@ impl Summary {
         let alerts = models.iter().zip(runs).flat_map(|(model, seen)| model.alerts(scenario, seen));
         let alerts =
             alerts.chain(Alert::off_axis(scenario.payload().moving(), scenario.spin_axis()));
-        let alerts = alerts.chain(far_from_nominal(scenario, &models));
+        let alerts = alerts.chain(off_nominal(scenario, &models));
         let alerts = alerts.chain(scenario.folded().into_iter().map(Alert::Folded));
         let alerts = alerts.chain(scenario.unmatched().into_iter().map(Alert::Unmatched));
         let head = Head { alerts: alerts.collect(), ..head_of(scenario, columns) };
@@ -311,27 +312,6 @@ fn dispersed(scenario: &Scenario, seen: &Seen) -> Vec<DispersedSummary> {
         late: late(d),
     };
     all.iter().map(summary).collect()
-}
-
-/// Laws whose means are far from the nominal values beside them: of what is dispersed, and of the inertias that bodies have by their own
-/// laws, by the traces of the matrices.
-fn far_from_nominal(scenario: &Scenario, models: &[ModelSummary]) -> Vec<Alert> {
-    let dispersed = models.first().map_or(&[][..], |model| &model.dispersed);
-    let in_all = dispersed.iter().filter(|d| d.late.is_none());
-    let numbers =
-        in_all.filter_map(|d| Alert::far_from_nominal(&d.quantity, d.nominal, d.law_mean));
-    let axes = scenario.models().iter().find_map(|model| model.law.own_axes());
-    let traces = scenario.bodies().into_iter().filter_map(|(which, body)| {
-        let trace = |entries: [f64; 6]| entries[..3].iter().sum::<f64>();
-        let mean = trace(body.expected_moments(axes?)?.mean());
-        let nominal = trace(body.nominal().as_inertia_matrix().entries());
-        Alert::far_from_nominal(
-            &format!("trace of the inertia of the {}", which.name()),
-            nominal,
-            mean,
-        )
-    });
-    numbers.chain(traces).collect()
 }
 
 impl LateSummary {

@@ -224,6 +224,68 @@ fn laws_far_from_nominal_values_are_told() {
     }
 }
 
+/// Mass centres whose laws are near the nominal one and far from it, of one body or both, stated as dispersions or as whole laws: those are
+/// told that are farther away than three deviations and than a tenth of the size of the body.
+#[test]
+fn mass_centres_far_from_nominal_are_told() {
+    let base = ordinary(2, 0.01, NORMAL);
+    for case in 0..4 * 4 * 3 * 3 * 2 {
+        let mean = [0.0_f64, 0.02, -0.2, 1.5][case % 4];
+        let sigma = [1e-6, 0.001, 0.1, 1.0][case / 4 % 4];
+        let (which, axis, whole) = (case / 16 % 3, case / 48 % 3, case / 144 == 1);
+        let mut table: toml::Table = base.to_toml().parse().unwrap();
+        let mut expected = Vec::new();
+        for (place, body) in Body::BOTH.into_iter().enumerate().filter(|(i, _)| which & 1 << i == 0)
+        {
+            let law = |i| {
+                format!(
+                    "{{ mean = {:?}, sigma = {:?} }}",
+                    if i == axis { mean } else { 0.0 },
+                    sigma
+                )
+            };
+            let centre = format!("mass_centre_m = [{}, {}, {}]", law(0), law(1), law(2));
+            let entry = table[body.name()].as_table_mut().unwrap();
+            let mass = entry["mass_kg"].as_float().unwrap();
+            let nominal = if place == 0 { base.payload() } else { base.stage() };
+            let moments = nominal.nominal().principal_axes().second_moments();
+            if whole {
+                let roots = moments.map(|k| format!("{{ mean = {:?}, sigma = 0.001 }}", k.sqrt()));
+                let law = format!(
+                    "mass_kg = {{ mean = {mass:?}, sigma = 1.0 }}\n{centre}\n[inertia.of.roots]\nlaws = [{}]\naxes = {{ law = \"uniform\" }}",
+                    roots.join(", ")
+                );
+                entry.remove("dispersion");
+                entry.insert("law".to_owned(), law.parse::<toml::Table>().unwrap().into());
+            } else {
+                let centre: toml::Table = centre.parse().unwrap();
+                entry["dispersion"].as_table_mut().unwrap().extend(centre);
+            }
+            let size = f64::sqrt(moments.iter().sum::<f64>() / mass);
+            if mean.abs() > 3.0 * sigma && mean.abs() > 0.1 * size {
+                expected.push((
+                    body.name().to_owned(),
+                    [0, 1, 2].map(|i| if i == axis { mean } else { 0.0 }),
+                ));
+            }
+        }
+        let text = toml::to_string(&table).unwrap();
+        let scenario = Scenario::from_toml(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let alerts = crate::off_nominal::off_nominal(&scenario, &[]);
+        let told = alerts.iter().filter_map(|alert| match alert {
+            Alert::CentreOffNominal { body, mean_m } => Some((body.clone(), *mean_m)),
+            _ => None,
+        });
+        assert_eq!(told.collect::<Vec<_>>(), expected, "{mean} {sigma} {axis} {whole}\n{text}");
+        if case % 53 == 0 {
+            let (summary, _) = study(&scenario);
+            let page = scenario.report(&summary).html();
+            let count = page.matches("is far from the nominal one").count();
+            assert_eq!(count, expected.len(), "{text}");
+        }
+    }
+}
+
 /// Matched to a principal law that is more and more uncertain: it is told exactly where the moments of what is drawn are not
 /// those of the principal law, and what is told of them is what the draws do.
 #[test]
@@ -376,6 +438,7 @@ proptest! {
             Alert::Folded(root) => ("folded", format!("{} {}", root.body, root.quantity)),
             Alert::Backwards { backwards, runs, .. } => ("backwards", format!("{backwards} of {runs}")),
             Alert::FarFromNominal { quantity, .. } => ("far", quantity.clone()),
+            Alert::CentreOffNominal { body, .. } => ("centre", body.clone()),
             Alert::OffAxis { angle_deg, .. } => ("off axis", angle_deg.to_string()),
             Alert::Unmatched(law) => ("unmatched", law.to_string()),
         });
