@@ -104,8 +104,8 @@ impl ScenarioCore {
         if let Some(seed) = seed {
             scenario = scenario.with_seed(seed).map_err(refused)?;
         }
-        if let Some(until) = until {
-            let rule: StoppingRule = until.parse().map_err(refused)?;
+        if until.is_some() || look_every.is_some() {
+            let rule: Option<StoppingRule> = until.map(str::parse).transpose().map_err(refused)?;
             scenario = scenario.with_until(rule, look_every).map_err(refused)?;
         }
         if rows.is_some() || columns.is_some() {

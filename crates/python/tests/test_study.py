@@ -472,8 +472,23 @@ def test_numbers_that_are_none_are_named(name: str, wrong: Any) -> None:
 
 
 def test_looks_need_a_rule_that_ends_the_runs() -> None:
-    with pytest.raises(ValueError, match="look_every = 10: it goes with until"):
+    with pytest.raises(ValueError, match="look_every: it goes with until"):
         gyradius.study(scenario(), double, look_every=10)
+
+
+@pytest.mark.parametrize("looks", [None, 150])
+@pytest.mark.parametrize("rule", [None, "mean(y) within 1e-9"])
+@pytest.mark.parametrize("given", [None, 250])
+def test_what_is_not_said_of_a_rule_is_that_of_the_scenario(
+    rule: str | None, given: int | None, looks: int | None
+) -> None:
+    until: dict[str, Any] = {"rule": "mean(y) within 1e9"}
+    if looks is not None:
+        until["look_every"] = looks
+    scene = {**scenario(), "until": until, "runs": 500}
+    study = gyradius.study(scene, double, until=rule, look_every=given)
+    expected = 500 if rule else given or looks or 256
+    assert list(study.runs.values()) == [expected]
 
 
 def test_a_million_may_be_written_as_a_float() -> None:

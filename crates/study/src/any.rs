@@ -165,7 +165,7 @@ impl AnyScenario {
     /// As there.
     pub fn with_until(
         self,
-        rule: StoppingRule,
+        rule: Option<StoppingRule>,
         look_every: Option<u64>,
     ) -> Result<Self, ScenarioError> {
         Ok(either_again!(self, scenario => scenario.with_until(rule, look_every)?))

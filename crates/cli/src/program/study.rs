@@ -25,15 +25,11 @@ const PATIENCE: Duration = Duration::from_secs(20);
 pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
     let scenario = stated(&arguments.scenario)?;
     let scenario = match (&arguments.until, arguments.look_every) {
-        (Some(rule), look_every) => scenario.with_until(rule.clone(), look_every)?,
-        (None, Some(runs)) => {
-            let own = scenario.until().map(|until| until.rule().clone());
-            let rule = own.ok_or_else(|| {
-                format!("--look-every {runs}: it goes with --until, or with a rule in the table until of the scenario, and there is neither")
-            })?;
-            scenario.with_until(rule, Some(runs))?
+        (None, Some(runs)) if scenario.until().is_none() => {
+            return Err(format!("--look-every {runs}: it goes with --until, or with a rule in the table until of the scenario, and there is neither").into());
         }
         (None, None) => scenario,
+        (rule, look_every) => scenario.with_until(rule.clone(), look_every)?,
     };
     let scenario = match arguments.drivers {
         Some(base_runs) => scenario.with_drivers(base_runs)?,

@@ -306,6 +306,7 @@ def study(
     until : str, optional
         Go on until the runs show enough, at most to their number: ``"decided"``, ``"share within 0.1 %"``,
         ``"mean(spin_rad_per_s) within 0.02"``. They are looked at after ``look_every`` runs first.
+        What of the two is not said is as the scenario has it.
     rows, columns : optional
         Which rows of the run tables are kept, ``"all"``, ``"failed"`` or ``"none"``, and which columns.
     drivers : int, optional
@@ -364,8 +365,6 @@ def study(
     """
     flags = {"force": force, "retry_failed": retry_failed, "even_if_full": even_if_full}
     flags = {name: flag(name, value) for name, value in flags.items()}
-    if look_every is not None and until is None:
-        raise ValueError(f"look_every = {look_every!r}: it goes with until, which is not given")
     kept = None if columns is None else listed("columns", columns, "names")
     if kept is not None and not all(isinstance(one, str) for one in kept):
         raise ValueError(f"columns = {kept!r}: it must be a list of names")

@@ -223,20 +223,18 @@ macro_rules! framed {
             }
 
             /// The same scenario, whose runs go on until a rule ends them, and are as many at most as they would be. They are
-            /// looked at after `look_every` first, if that is said.
+            /// looked at after `look_every` first. What of the two is not said is as the scenario has it.
             ///
             /// # Errors
-            /// The rule is about requirements, and there are none; `look_every` is zero, or not a whole number of vehicles.
+            /// There is no rule; it is about requirements, and there are none; `look_every` is zero, or not a whole number of
+            /// vehicles.
             pub fn with_until(
                 self,
-                rule: StoppingRule,
+                rule: Option<StoppingRule>,
                 look_every: Option<u64>,
             ) -> Result<Self, ScenarioError> {
-                let new = $crate::scenario::UntilFile::new(rule, look_every);
-                let until = Some(match &self.until {
-                    Some(until) => new.with_most_runs(until.most_runs()),
-                    None => new,
-                });
+                let own = self.file.until.as_ref();
+                let until = Some($crate::scenario::UntilFile::again(own, rule, look_every)?);
                 let mut file = $file { until, ..self.file };
                 let until = file.until(self.size)?;
                 Ok(Self { file, until, ..self })

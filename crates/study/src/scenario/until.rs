@@ -25,9 +25,23 @@ pub(crate) struct UntilFile {
 const FIELD: &str = "until";
 
 impl UntilFile {
-    /// A rule, and after how many runs they are looked at first, if that is said.
-    pub(crate) fn new(rule: StoppingRule, look_every: Option<u64>) -> Self {
-        Self { rule, first_look: None, look_every, most_runs: None }
+    /// That of a scenario, with another rule, or looked at after another number of runs, if these are said.
+    pub(crate) fn again(
+        own: Option<&Self>,
+        rule: Option<StoppingRule>,
+        look_every: Option<u64>,
+    ) -> Result<Self, ScenarioError> {
+        let rule = rule.or_else(|| own.map(|own| own.rule.clone())).ok_or_else(|| {
+            let alone = "it goes with until, which is neither given nor in the scenario";
+            ScenarioError::field("look_every", alone)
+        })?;
+        let look_every = look_every.or_else(|| own?.look_every);
+        Ok(Self {
+            rule,
+            first_look: None,
+            look_every,
+            most_runs: own.and_then(|own| own.most_runs),
+        })
     }
 
     /// The runs of a scenario that says how many there may be, and not how many there are.
@@ -89,24 +103,33 @@ impl UntilFile {
 mod tests {
     use crate::Scenario;
 
-    /// Another rule, or another number of runs between looks, leaves the greatest number of runs as the scenario has it.
+    /// Another rule, or another number of runs between looks, leaves the rest as the scenario has it.
     #[test]
-    fn the_greatest_number_of_runs_is_that_of_the_scenario() {
+    fn what_is_not_said_of_a_rule_is_that_of_the_scenario() {
         let peck = Scenario::peck_2003().unwrap().to_toml();
         let rest: Vec<&str> = peck.lines().filter(|line| !line.starts_with("runs =")).collect();
-        for (own, most) in [("runs = 60", Some(200)), ("", Some(200)), ("runs = 60", None)] {
-            let most_runs = most.map_or(String::new(), |most| format!("most_runs = {most}\n"));
-            let until = format!("[until]\nrule = \"mean(nutation_deg) within 1\"\n{most_runs}");
+        const OWN: &str = "mean(nutation_deg) within 1";
+        let most = [("runs = 60", Some(200)), ("", Some(200)), ("runs = 60", None)];
+        for ((own, most), looks) in most.into_iter().flat_map(|m| [(m, None), (m, Some(20))]) {
+            let line = |key, number: Option<u64>| {
+                number.map_or(String::new(), |number| format!("{key} = {number}\n"))
+            };
+            let [most_runs, looked] = [line("most_runs", most), line("look_every", looks)];
+            let until = format!("[until]\nrule = \"{OWN}\"\n{most_runs}{looked}");
             let text = format!("{own}\n{}\n{until}", rest.join("\n"));
             for look_every in [None, Some(40)] {
-                for rule in ["mean(nutation_deg) within 1", "mean(cone_deg) within 2"] {
-                    let (scenario, rule) =
-                        (Scenario::from_toml(&text).unwrap(), rule.parse().unwrap());
-                    let scenario = scenario.with_until(rule, look_every).unwrap();
+                for rule in [None, Some(OWN), Some("mean(cone_deg) within 2")] {
+                    let given = rule.map(|rule| rule.parse().unwrap());
+                    let scenario = Scenario::from_toml(&text).unwrap();
+                    let scenario = scenario.with_until(given, look_every).unwrap();
                     let again = Scenario::from_toml(&scenario.to_toml()).unwrap();
                     for scenario in [&scenario, &again] {
                         let until = scenario.until().unwrap();
                         assert_eq!(until.most_runs(), most.unwrap_or(60), "{text}");
+                        assert_eq!(until.rule().to_string(), rule.unwrap_or(OWN), "{text}");
+                        let first = until.looks().next();
+                        let every = look_every.or(looks).unwrap_or(1000);
+                        assert_eq!(first, Some(every.min(until.most_runs())), "{text}");
                     }
                     // A number of runs that is said is the greatest.
                     let fewer = scenario.with_runs(90).unwrap();

@@ -439,7 +439,7 @@ fn a_study_that_a_rule_ended_is_read_without_the_function() {
     let text = uniform().replace(COMMAND, FUNCTION);
     let until = |rule: &str| {
         let scenario = SimulatorScenario::from_toml(&text, folder.path()).unwrap();
-        scenario.with_runs(3000).unwrap().with_until(rule.parse().unwrap(), None).unwrap()
+        scenario.with_runs(3000).unwrap().with_until(Some(rule.parse().unwrap()), None).unwrap()
     };
     let options = Options { out: Some(folder.path().join("out")), ..Options::default() };
     let scenario = until("mean(y) within 0.5");
