@@ -116,6 +116,40 @@ fn manual_pages_name_every_verb_and_flag() {
     }
 }
 
+/// A line that is to be copied stands whole in the page, between the requests that keep it from being filled.
+#[test]
+fn manual_pages_have_examples_line_by_line() {
+    let plain = |text: &str| text.replace("\\-", "-").replace("\\*(Aq", "'");
+    for verb in verbs() {
+        let page = plain(&printed(&["man", &verb]));
+        let mut is_kept = false;
+        let kept: Vec<&str> = page
+            .lines()
+            .filter(|line| {
+                is_kept = *line != ".fi" && (is_kept || *line == ".nf");
+                is_kept && *line != ".nf"
+            })
+            .collect();
+        let help = printed(&[&verb, "--help"]);
+        let examples = help.lines().skip_while(|line| *line != "Examples:").skip(1);
+        let examples: Vec<&str> = examples.filter(|line| line.starts_with("  ")).collect();
+        assert!(examples.len() > 1, "{verb}: {help}");
+        // Help is wrapped, and the page is not.
+        let words =
+            |lines: &[&str]| lines.join(" ").split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words(&kept).contains(&words(&examples)), "{verb}: {page}");
+        let commands =
+            |lines: &[&str]| lines.iter().filter(|line| line.starts_with("  gyradius")).count();
+        assert_eq!(commands(&kept), commands(&examples), "{verb}: {page}");
+        let usage = help.lines().find_map(|line| line.strip_prefix("Usage: ")).unwrap();
+        assert!(page.contains(&format!(".SH SYNOPSIS\n{usage}\n")), "no {usage}: {page}");
+        for title in ["EXAMPLES", "EXIT STATUS"] {
+            let heads = page.lines().filter(|line| line.starts_with(".SH") && line.contains(title));
+            assert_eq!(heads.count(), 1, "{verb}: {page}");
+        }
+    }
+}
+
 #[test]
 fn what_does_not_exist_is_refused_by_name() {
     for (arguments, told) in [
