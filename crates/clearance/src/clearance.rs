@@ -15,6 +15,9 @@ pub struct Clearance {
     shapes: Vec<ShapeClearance>,
     #[cfg_attr(feature = "serde", serde(rename = "undecided_from_s"))]
     undecided: Option<f64>,
+    /// Whether a search ended before all was proven.
+    #[cfg_attr(feature = "serde", serde(default, rename = "is_stopped"))]
+    stopped: bool,
     looks: usize,
 }
 
@@ -88,7 +91,7 @@ impl Clearance {
         // The start itself has to be known.
         let until = motion.known_until_s().min(to_s).max(from_s);
         let mut shapes = Vec::with_capacity(payload.shapes().len() * stage.shapes().len());
-        let mut looks = 0;
+        let (mut looks, mut stopped) = (0, false);
         for (i, p) in payload.shapes().iter().enumerate() {
             for (j, s) in stage.shapes().iter().enumerate() {
                 let mut search = Search::new(motion, p, s, settings);
@@ -96,10 +99,11 @@ impl Clearance {
                     shape_clearance(&mut search, [from_s, until], settings, is_mated([i, j]))?;
                 (found.payload_shape, found.stage_shape) = (i, j);
                 looks += search.nodes();
+                stopped |= search.is_stopped();
                 shapes.push(found);
             }
         }
-        let mut found = Self { shapes, undecided: None, looks };
+        let mut found = Self { shapes, undecided: None, stopped, looks };
         if until < to_s && !found.is_final(payload, stage, motion, [until, to_s]) {
             found.undecided = Some(until);
         }
@@ -156,6 +160,13 @@ impl Clearance {
     #[must_use]
     pub fn undecided_from_s(&self) -> Option<f64> {
         self.undecided
+    }
+
+    /// Whether a search was given up before all was proven, after two million looks at two shapes: the distance and the contact that it
+    /// has are there, but the bodies may come nearer, to [`Approach::at_least_m`], or touch earlier.
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        self.stopped
     }
 
     /// When any shapes first touch, mated ones after having parted, s.

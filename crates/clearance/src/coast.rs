@@ -113,7 +113,8 @@ impl FreeMotion {
             .max((i[2] - i[0]).abs() / i[1])
             .max((i[0] - i[1]).abs() / i[2]);
         let growth = skew / 3.0_f64.sqrt() * (1.0 + 1e-9);
-        let hardest = growth * fastest * fastest;
+        let by_polhode = hardest_by_polhode(i, momentum.norm_squared(), energy2) * fastest;
+        let hardest = (growth * fastest * fastest).min(by_polhode);
         let step = (TURN / fastest).min(SHARE / (growth * fastest)).min(1e9);
         let inverse = body.inverse_inertia;
         Self { state, inverse, fastest, hardest, step, series: Vec::new() }
@@ -149,6 +150,29 @@ impl FreeMotion {
             angular_velocity: self.inverse * momentum,
         })
     }
+}
+
+/// A bound on the angular acceleration over the angular speed, 1/s, of a body with these principal moments, from h² and twice the
+/// energy: next to nothing for one that spins about its axis of the largest or the smallest moment.
+///
+/// Of the axis k of either, h² − 2 T I_k = Σ I_j (I_j − I_k) ω_j², in which all terms have one sign, so that each |ω_j| is bounded,
+/// and with it I_i α_i = (I_j − I_k) ω_j ω_k. I_k α_k = (I_i − I_j) ω_i ω_j, and |I_i − I_j| is at most the larger |I_j − I_k|.
+fn hardest_by_polhode(moments: [f64; 3], momentum2: f64, energy2: f64) -> f64 {
+    let about = |k: usize| {
+        let off = momentum2 - energy2 * moments[k];
+        // And what rounding may have taken.
+        let most = off.abs() + 1e-13 * (momentum2 + energy2 * moments[k]);
+        let [i, j] = [(k + 1) % 3, (k + 2) % 3];
+        let [by_i, by_j] =
+            [i, j].map(|j| (most * (moments[j] - moments[k]).abs() / moments[j]).sqrt());
+        let [a, b, c] = [by_j / moments[i], by_i / moments[j], by_i.max(by_j) / moments[k]];
+        (a * a + b * b + c * c).sqrt() * (1.0 + 1e-9)
+    };
+    let is_end = |k: usize| {
+        let [a, b] = [1, 2].map(|by| moments[(k + by) % 3]);
+        (moments[k] - a) * (moments[k] - b) >= 0.0
+    };
+    (0..3).filter(|k| is_end(*k)).map(about).fold(f64::INFINITY, f64::min)
 }
 
 /// Attitude and angular momentum (body axes) as power series in time.

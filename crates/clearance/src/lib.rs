@@ -15,6 +15,7 @@ mod part;
 mod search;
 mod settings;
 mod state;
+mod surrounding;
 mod trigonometric;
 
 pub use clearance::{Approach, Clearance, ShapeClearance};

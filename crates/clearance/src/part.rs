@@ -213,6 +213,10 @@ impl Part<'_> {
         let by_time = held(&look.turning, span);
         let along = match &self.pair {
             Pair::Mixed(pair) => {
+                let around = pair.surrounded(frame, limits, span) - target;
+                if around >= 0.0 {
+                    return around;
+                }
                 let normal = if pair.ring_body == 0 { normal } else { -normal };
                 let by_time = if pair.ring_body == 0 { by_time } else { -by_time };
                 let by_angle = held(&look.by_angle, arc.half);

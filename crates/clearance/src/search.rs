@@ -13,7 +13,8 @@ use crate::{
     settings::ClearanceSettings,
 };
 
-/// Nodes looked at before a search ends with what it has. Far above any case met.
+/// Nodes looked at before a search ends with what it has, and says so. Where little is to be proven, as of a hull in a ring that is a few
+/// micrometres wider, there may be as many.
 const MOST_NODES: usize = 2_000_000;
 /// Arcs that a ring is cut into first.
 const ARCS: usize = 8;
@@ -77,6 +78,9 @@ pub(crate) struct Search<'a, M> {
     touch: f64,
     heap: BinaryHeap<Node>,
     nodes: usize,
+    most_nodes: usize,
+    /// Whether it ended before all was proven.
+    is_stopped: bool,
 }
 
 impl<'a, M: Motion> Search<'a, M> {
@@ -98,6 +102,8 @@ impl<'a, M: Motion> Search<'a, M> {
             touch,
             heap: BinaryHeap::new(),
             nodes: 0,
+            most_nodes: MOST_NODES,
+            is_stopped: false,
         }
     }
 
@@ -109,6 +115,11 @@ impl<'a, M: Motion> Search<'a, M> {
     /// Nodes looked at so far.
     pub(crate) fn nodes(&self) -> usize {
         self.nodes
+    }
+
+    /// Whether it ended before all was proven: there may be a smaller distance, or an earlier contact.
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.is_stopped
     }
 
     /// For how long from `time` on the points seen there stay nearer to each other than `parted`,
@@ -298,7 +309,8 @@ impl<'a, M: Motion> Search<'a, M> {
                 continue;
             }
             self.nodes += 1;
-            if self.nodes > MOST_NODES {
+            if self.nodes > self.most_nodes {
+                self.is_stopped = true;
                 undecided = undecided.min(node.bound);
                 break;
             }
@@ -335,7 +347,8 @@ impl<'a, M: Motion> Search<'a, M> {
                 break;
             }
             self.nodes += 1;
-            if self.nodes > MOST_NODES {
+            if self.nodes > self.most_nodes {
+                self.is_stopped = true;
                 break;
             }
             let node = Node { to: node.to.min(earliest.time), ..node };
@@ -448,3 +461,6 @@ fn keep_seen(best: &mut Seen, seen: &Seen) {
         *best = *seen;
     }
 }
+
+#[cfg(test)]
+mod tests;

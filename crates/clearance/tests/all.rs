@@ -7,3 +7,4 @@ mod following;
 mod forms;
 mod pairs;
 mod rings;
+mod surrounded;

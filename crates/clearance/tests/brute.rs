@@ -13,7 +13,7 @@ use crate::forms::{Form, V, at_rest, body, distance, form, vector};
 
 /// Holds a clearance against samples of the motion: points are on the shapes and as far apart as said, and
 /// no sample, nor what it leads down to, is nearer than the bound.
-fn check<M: Motion>(
+pub(crate) fn check<M: Motion>(
     forms: [&Form; 2],
     motion: &mut M,
     until: f64,

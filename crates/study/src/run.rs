@@ -222,6 +222,14 @@ pub(crate) enum ClearanceNote {
         /// Until when they are followed, s.
         until: f64,
     },
+    /// The search was given up.
+    #[error(
+        "not proven: the bodies may come nearer, or touch earlier, for the search was given up after {looks} looks"
+    )]
+    NotProven {
+        /// Instants and spans looked at.
+        looks: usize,
+    },
     /// Before the last release the bodies come nearer than when the clamp opened, and than after it.
     #[error(
         "the outlines come nearer before the last release: to {} m at {} s",
@@ -248,6 +256,8 @@ impl ClearanceNote {
         };
         let clearance = watched.clearance();
         let partial = clearance.undecided_from_s().map(|until| Self::Partial { until });
+        let looks = clearance.looks();
+        let not_proven = clearance.is_stopped().then_some(Self::NotProven { looks });
         let nearer = watched.nearer_before().map(|nearest| Self::NearerBefore {
             distance: nearest.distance_m(),
             time: nearest.time_s(),
@@ -260,7 +270,7 @@ impl ClearanceNote {
             (false, false) => Some(Self::Together),
         };
         // Up to when the bodies are followed comes first, for what is said of the outlines holds until then.
-        [partial, nearer, mated].into_iter().flatten().collect()
+        [partial, not_proven, nearer, mated].into_iter().flatten().collect()
     }
 
     /// What kind it is, without numbers, so that those of a kind can be counted.
@@ -270,6 +280,7 @@ impl ClearanceNote {
             Self::Together => "all outlines are mated, and some do not part",
             Self::SomeTogether => "some outlines are mated and do not part",
             Self::Partial { .. } => "a body turns too far to be followed to the end of the coast",
+            Self::NotProven { .. } => "the search was given up before the clearance was proven",
             Self::NearerBefore { .. } => {
                 "the outlines come nearer before the last release than after it"
             }

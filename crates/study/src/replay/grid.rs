@@ -48,7 +48,7 @@ impl Part {
 pub(super) struct Grid {
     interval: f64,
     is_scattered: bool,
-    next: u32,
+    next: u64,
 }
 
 impl Grid {
@@ -56,7 +56,7 @@ impl Grid {
         let mut grid = Self { interval: part.interval, is_scattered, next: 0 };
         if part.start > 0.0 {
             // The start itself belongs to the part before.
-            grid.next = (part.start / part.interval) as u32;
+            grid.next = (part.start / part.interval) as u64;
             while grid.time() <= part.start {
                 grid.next += 1;
             }
@@ -65,7 +65,7 @@ impl Grid {
     }
 
     fn time(&self) -> f64 {
-        let next = f64::from(self.next);
+        let next = self.next as f64;
         let later = if self.is_scattered { (next * GOLDEN).fract() } else { 0.0 };
         (next + later) * self.interval
     }
@@ -79,5 +79,30 @@ impl Grid {
                 time
             })
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// However late a part begins, and however short its steps: its first times follow its start, by about a step each.
+        #[test]
+        fn times_follow_the_start_of_a_part(
+            start in prop_oneof![0.0..10.0f64, 1e3..1e9f64],
+            interval in -9.0..2.0f64,
+            is_scattered: bool,
+        ) {
+            let interval = 10.0_f64.powf(interval);
+            let mut grid = Grid::new(Part { start, interval, is_coarse: false }, is_scattered);
+            let times: Vec<f64> = grid.before(start + 10.0 * interval).collect();
+            let rounding = 4.0 * f64::EPSILON * start;
+            prop_assert!((7..=11).contains(&times.len()) || rounding > 0.1 * interval, "{times:?}");
+            prop_assert!(times.iter().all(|t| *t > start || start == 0.0), "{times:?}");
+            prop_assert!(times.windows(2).all(|two| two[1] - two[0] < 2.0 * interval + rounding));
+            prop_assert!(times.first().is_none_or(|first| first - start < 2.0 * interval + rounding));
+        }
     }
 }
