@@ -6,7 +6,6 @@ use crate::{
     alerts::Alert,
     body::Body,
     scenario::{Scenario, Target, UncertainBody},
-    summary::ModelSummary,
 };
 
 /// Standard deviations of a mass centre: one that a designer moved on purpose may be farther away.
@@ -15,12 +14,14 @@ const DEVIATIONS: f64 = 3.0;
 /// centre that is told from another point is usually farther away than that.
 const SHARE: f64 = 0.1;
 
-/// What is dispersed, the inertias that bodies have by their own laws, by the traces of the matrices, and mass centres.
-pub(crate) fn off_nominal(scenario: &Scenario, models: &[ModelSummary]) -> Vec<Alert> {
-    let dispersed = models.first().map_or(&[][..], |model| &model.dispersed);
-    let in_all = dispersed.iter().filter(|d| d.late.is_none());
+/// Of numbers with their nominal values and the means of their laws, of the inertias that bodies have by their own laws, by the traces of
+/// the matrices, and of mass centres.
+pub(crate) fn off_nominal<'a>(
+    scenario: &Scenario,
+    numbers: impl Iterator<Item = (&'a str, f64, f64)>,
+) -> Vec<Alert> {
     let numbers =
-        in_all.filter_map(|d| Alert::far_from_nominal(&d.quantity, d.nominal, d.law_mean));
+        numbers.filter_map(|(name, nominal, mean)| Alert::far_from_nominal(name, nominal, mean));
     let axes = scenario.models().iter().find_map(|model| model.law.own_axes());
     let traces = scenario.bodies().into_iter().filter_map(|(which, body)| {
         let mean = trace(body.expected_moments(axes?)?.mean());

@@ -271,7 +271,7 @@ fn mass_centres_far_from_nominal_are_told() {
         }
         let text = toml::to_string(&table).unwrap();
         let scenario = Scenario::from_toml(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-        let alerts = crate::off_nominal::off_nominal(&scenario, &[]);
+        let alerts = crate::off_nominal::off_nominal(&scenario, std::iter::empty());
         let told = alerts.iter().filter_map(|alert| match alert {
             Alert::CentreOffNominal { body, mean_m } => Some((body.clone(), *mean_m)),
             _ => None,
