@@ -18,13 +18,14 @@ fn moments(numbers: &PartNumbers) -> Moments {
 /// The first row with numbers whose name says that it sums up others, or speaks of a sum and has that of rows above it.
 pub(super) fn named(rows: &[PartRow]) -> Option<&PartRow> {
     let size = size(rows);
-    let mut parts: Vec<Moments> = Vec::new();
+    let (mut parts, mut only_grow): (Vec<Moments>, bool) = (Vec::new(), true);
     for (row, numbers) in rows.iter().filter_map(|row| Some((row, row.numbers()?))) {
         let found = moments(numbers);
-        let is_sum = |least| is_sum(&parts, least, found, size);
+        let is_sum = |least| is_sum(&parts, least, found, size, only_grow);
         if is_summary(row.name()) || least_summed(row.name()).is_some_and(is_sum) {
             return Some(row);
         }
+        only_grow &= found[0] >= 0.0;
         parts.push(found);
     }
     None
@@ -50,13 +51,17 @@ pub(super) fn like_totals(rows: &[PartRow]) -> Vec<&PartRow> {
     found
 }
 
-/// Whether it is the sum of so many or more of the last ones.
-fn is_sum(parts: &[Moments], least: usize, of: Moments, size: f64) -> bool {
+/// Whether it is the sum of so many or more of the last ones. `only_grow` says that no mass is negative: nothing above rows that weigh
+/// more already makes the sum less, and lists of 60,000 parts whose names speak of a mass are not summed up once for each part.
+fn is_sum(parts: &[Moments], least: usize, of: Moments, size: f64, only_grow: bool) -> bool {
     let mut sum = [0.0; 4];
-    parts.iter().rev().zip(1..).any(|(one, count)| {
+    let sums = parts.iter().rev().zip(1..).map(|(one, count)| {
         sum = plus(sum, *one);
-        count >= least && is_same(sum, of, size)
-    })
+        (sum, count)
+    });
+    let is_heavier = |sum: &Moments| only_grow && sum[0] > (1.0 + 2.0 * ROUNDED) * of[0];
+    sums.take_while(|(sum, _)| !is_heavier(sum))
+        .any(|(sum, count)| count >= least && is_same(sum, of, size))
 }
 
 fn plus(a: Moments, b: Moments) -> Moments {
@@ -73,4 +78,26 @@ fn is_same(sum: Moments, total: Moments, size: f64) -> bool {
 fn size(rows: &[PartRow]) -> f64 {
     let numbers = rows.iter().filter_map(PartRow::numbers);
     numbers.flat_map(PartNumbers::mass_centre_m).fold(0.0, |size: f64, x| size.max(x.abs()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// That sums of masses that only grow are given up where they are heavier changes no answer: half of these rows are sums.
+        #[test]
+        fn what_is_heavier_is_no_sum(
+            parts in prop::collection::vec((0.0..3.0f64, prop::array::uniform3(-1.0..1.0f64)), 1..12),
+            (summed, least, of_some, off) in (1..12_usize, 1..4_usize, any::<bool>(), 0.998..1.002f64),
+        ) {
+            let parts: Vec<Moments> =
+                parts.into_iter().map(|(mass, [x, y, z])| [mass, mass * x, mass * y, mass * z]).collect();
+            let last = parts.iter().rev().take(summed);
+            let of = if of_some { last.fold([0.0; 4], |sum, one| plus(sum, *one)) } else { parts[0] };
+            let of = of.map(|x| x * off);
+            prop_assert_eq!(is_sum(&parts, least, of, 1.0, true), is_sum(&parts, least, of, 1.0, false));
+        }
+    }
 }
