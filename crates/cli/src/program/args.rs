@@ -130,7 +130,7 @@ pub(crate) enum Command {
     /// margin, the verdict, how many more runs would decide, how good a vehicle must be to pass, and the worst runs.
     #[command(after_help = VERDICT_EXAMPLES)]
     Verdict(VerdictArgs),
-    /// Find how often a rare event happens, as "cone_deg >= 8": probabilities down to 1e-9, with an interval
+    /// Find how often a rare event happens, as "cone_deg >= 3": probabilities down to 1e-9, with an interval
     ///
     /// Subset simulation: a first level of plain runs, of which the tenth nearest to the event goes on; some of their inputs are drawn
     /// anew from their own laws, one group of inputs at a time, and so on to the event. It takes some thousand runs for each digit

@@ -91,8 +91,8 @@ Exit code: 0 if all are met, 1 if one is not met or not decided, 2 if the table 
 
 pub(crate) const RARE_EXAMPLES: &str = "\
 Examples:
-  gyradius rare \"cone_deg >= 8\"
-      How often the cone of the built-in study is 8 deg or more
+  gyradius rare \"cone_deg >= 3\"
+      How often the cone of the built-in study is 3 deg or more
   gyradius rare \"clearance_m <= 0\" --scenario my-vehicle.toml --per-level 5000
       How often the bodies touch, with more runs of a level
   gyradius rare \"clearance_m <= 0\" --scenario my-vehicle.toml --method importance --sample 50000
