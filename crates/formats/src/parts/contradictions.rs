@@ -29,7 +29,8 @@ fn shapes_and_points_do_not_contradict_each_other() {
             ("no", Some(false)),
             ("0", Some(false)),
         ] {
-            let text = format!("{HEAD}\na,5,0,0,0,,,,,,,,{shape},1,{flag},\n");
+            let radius = if is_point { "" } else { "1" };
+            let text = format!("{HEAD}\na,5,0,0,0,,,,,,,,{shape},{radius},{flag},\n");
             match (read(&text), said.is_none_or(|said| said == is_point)) {
                 (Ok(table), true) => {
                     let moment = table.rows()[0].numbers().unwrap().inertia().entries()[0];

@@ -237,6 +237,19 @@ pub enum PartsProblem {
         /// Why.
         message: String,
     },
+    /// A size in a row that has no shape which has sizes.
+    #[error(
+        "column {heading:?} says {value:?}, which is a size of a shape, and {what}: the cell must be empty or 0, or the column \"shape\" \
+         must name the shape"
+    )]
+    Size {
+        /// The heading.
+        heading: String,
+        /// The cell.
+        value: String,
+        /// What the row is.
+        what: &'static str,
+    },
     /// Neither inertia nor shape.
     #[error(
         "there is no inertia: the row must have ixx, iyy and izz, the radii of gyration kx, ky and kz, a shape with its \

@@ -17,7 +17,7 @@ const UNIT: f64 = 1e-3;
 /// What R writes where nothing is known. It is an empty cell wherever that stands for no number.
 pub(super) const NOT_KNOWN: &str = "NA";
 
-fn is_blank(cell: &str) -> bool {
+pub(super) fn is_blank(cell: &str) -> bool {
     cell.is_empty() || cell == NOT_KNOWN
 }
 

@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 
 use super::error::PartsProblem;
 use super::heading::{Column, Heading};
-use super::row::{Cells, boolean};
+use super::row::{Cells, boolean, is_blank};
 use crate::body::{Number, shortened};
 
 impl Cells<'_> {
@@ -14,7 +14,9 @@ impl Cells<'_> {
         let point = self.text(Column::Point);
         let is_point = point.map(|word| boolean("point", word)).transpose()?;
         let Some(name) = self.text(Column::Shape) else {
-            return Ok(is_point.unwrap_or_default().then_some(None));
+            let is_point = is_point.unwrap_or_default();
+            let what = if is_point { "the row is a point" } else { "the row has no shape" };
+            return self.without_sizes(what).map(|()| is_point.then_some(None));
         };
         let spelled = name;
         let name = name.to_lowercase().replace([' ', '-'], "_");
@@ -24,7 +26,7 @@ impl Cells<'_> {
             return Err(PartsProblem::Contradiction { first, second });
         }
         if name == "point" {
-            return Ok(Some(None));
+            return self.without_sizes("the row is a point").map(|()| Some(None));
         }
         let mut table = Map::new();
         table.insert("shape".to_owned(), Value::from(name));
@@ -34,7 +36,7 @@ impl Cells<'_> {
         };
         for ((size, si), cell) in self.given(of) {
             let mut numbers = Vec::new();
-            for word in cell.split([' ', '×', ';', '/']).filter(|word| !word.is_empty()) {
+            for word in numbers_of(cell) {
                 let number = Number::parse(size, word, None)?.value;
                 numbers.push(Value::from(number * si));
             }
@@ -63,4 +65,24 @@ impl Cells<'_> {
             PartsProblem::Shape { message }
         })
     }
+
+    /// That a row which is `what` has no sizes. A program that fills every cell writes zeros, which say nothing here.
+    fn without_sizes(&self, what: &'static str) -> Result<(), PartsProblem> {
+        let is_zero = |word: &str| word.parse() == Ok(0.0);
+        let says_nothing = |cell: &str| {
+            is_blank(cell) || (numbers_of(cell).next().is_some() && numbers_of(cell).all(is_zero))
+        };
+        let mut cells = self.columns.iter().zip(self.headings).zip(self.cells);
+        let found = cells
+            .find(|((column, _), cell)| matches!(column, Heading::Size(..)) && !says_nothing(cell));
+        found.map_or(Ok(()), |((_, heading), cell)| {
+            let (heading, value) = (shortened(heading), shortened(cell));
+            Err(PartsProblem::Size { heading, value, what })
+        })
+    }
+}
+
+/// The numbers of a size, of which a cell may have several.
+fn numbers_of(cell: &str) -> impl Iterator<Item = &str> {
+    cell.split([' ', '×', ';', '/']).filter(|word| !word.is_empty())
 }

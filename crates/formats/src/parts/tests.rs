@@ -442,3 +442,37 @@ fn sizes_without_shapes_are_not_read() {
     assert_eq!(table.rows()[0].numbers(), None);
     assert_eq!(table.passed_over(), ["length", "height (max)", "arm_m"]);
 }
+
+/// A size in a row that has no use for it says something that nobody reads, whatever else the row is; a zero says nothing.
+#[test]
+fn sizes_stand_in_the_rows_of_their_shapes_alone() {
+    let rows = [
+        (",,,,,,point,", "the row is a point"),
+        (",,,,,,Point,TRUE", "the row is a point"),
+        (",,,,,,,yes", "the row is a point"),
+        ("1,1,1,,,,,", "the row has no shape"),
+        ("1,1,1,,,,,no", "the row has no shape"),
+        (",,,1,1,1,,", "the row has no shape"),
+    ];
+    for size in gyradius_inertia::Shape::SIZES {
+        for (row, what) in rows {
+            for cell in
+                ["", "NA", "0", "0.0", "-0", "0 0 0", "0;0", "0.3", "1e-9", "abc", "-", "/", "0 1"]
+            {
+                let text = format!(
+                    "{HEAD},ixx,iyy,izz,kx,ky,kz,shape,point,{size}\nm,,5,1,0,0,{row},{cell}\n"
+                );
+                let is_nothing = matches!(cell, "" | "NA" | "0" | "0.0" | "-0" | "0 0 0" | "0;0");
+                match read(&text) {
+                    Ok(_) => assert!(is_nothing, "{text}"),
+                    Err(error) => {
+                        let said = format!("line 2: m: column {size:?} says {cell:?}, which is");
+                        let error = error.to_string();
+                        assert!(!is_nothing, "{text}: {error}");
+                        assert!(error.starts_with(&said) && error.contains(what), "{error}");
+                    }
+                }
+            }
+        }
+    }
+}
