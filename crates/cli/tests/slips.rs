@@ -252,7 +252,7 @@ fn outputs_that_cannot_be_written_are_named() {
     }
 }
 
-/// What of a folder is not read is named: keys of bodies, compressed files, tables beside those that are judged.
+/// What of a folder is not read is named: keys, compressed files, tables beside those that are judged.
 #[test]
 fn what_is_not_read_is_named_in_text_and_in_json() {
     let shell = Scratch::new();
@@ -265,7 +265,7 @@ fn what_is_not_read_is_named_in_text_and_in_json() {
         fs::write(shell.path(name), "").unwrap();
     }
     let told = shell.done(&["check", "f"], 0);
-    let note = "note: f/a.json:2: 2 keys of bodies are not read: colour, material";
+    let note = "note: f/a.json:2: 2 keys are not read: colour, material";
     assert!(told.lines().any(|line| line == note), "{told}");
     assert!(told.contains("f/b.urdf.gz: it is compressed") && told.contains("f/c.zip"), "{told}");
     assert!(told.contains("2 files passed over"), "{told}");

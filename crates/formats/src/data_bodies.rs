@@ -42,22 +42,35 @@ pub(crate) fn bodies(
     Ok((found.into_iter().map(|(key, item)| body(text, key, item, products)).collect(), gaps))
 }
 
-/// The keys of bodies that mean nothing here. A document that is a body itself may hold anything beside it.
+/// The keys that mean nothing here: of each body, and of the document around them, which may say by them what it means by its numbers.
 fn unread_keys(text: &Text, root: &Item<'_>, found: &[(&str, &Item<'_>)], gaps: &mut Gaps) {
-    let bodies = found.iter().filter(|(_, item)| !std::ptr::eq(*item, root));
-    let keys = bodies.flat_map(|(_, item)| item.entries().iter().map(move |entry| (item, entry)));
-    let mut unread = keys
-        .filter(|(item, (key, value))| {
-            !data_keys::is_read(key) && mistaken(item, key, value).is_none()
-        })
-        .map(|(_, entry)| entry)
-        .peekable();
-    let Some(line) = unread.peek().map(|(_, value)| text.line(value.start)) else { return };
+    let bodies: HashSet<*const Item<'_>> =
+        found.iter().map(|(_, item)| std::ptr::from_ref(*item)).collect();
+    let is_body = |item: &Item<'_>| bodies.contains(&std::ptr::from_ref(item));
+    let holds_body = |item: &Item<'_>| {
+        let inside = item.entries().iter().map(|(_, item)| item);
+        is_body(item) || item.items().iter().chain(inside).any(is_body)
+    };
+    let of_bodies = found.iter().flat_map(|(_, item)| {
+        let is_known = |key: &str, value| {
+            let is_held = std::ptr::eq(*item, root) && holds_body(value);
+            is_held || data_keys::is_read(key) || mistaken(item, key, value).is_some()
+        };
+        item.entries().iter().filter(move |(key, value)| !is_known(key, value))
+    });
+    // A document that is a body itself is among them.
+    let around = if is_body(root) { &[] } else { root.entries() };
+    let is_known = |key: &str, value: &Item<'_>| {
+        let is_table = matches!(value.value, Value::Table(_));
+        data_keys::is_read_of_all(key) && !is_table || holds_body(value)
+    };
+    let around = around.iter().filter(|(key, value)| !is_known(key, value));
+    let mut unread: Vec<_> = around.chain(of_bodies).collect();
+    unread.sort_by_key(|(_, value)| value.start);
+    let Some(line) = unread.first().map(|(_, value)| text.line(value.start)) else { return };
     let mut seen = HashSet::new();
-    gaps.add_keys(
-        line,
-        unread.filter(|(key, _)| seen.insert(key)).map(|(key, _)| key.clone()).collect(),
-    );
+    unread.retain(|(key, _)| seen.insert(key));
+    gaps.add_keys(line, unread.into_iter().map(|(key, _)| key.clone()).collect());
 }
 
 /// What of a document is a body or should be one, with the names of those that have them, in the order of the file.

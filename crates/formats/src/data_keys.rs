@@ -16,6 +16,11 @@ pub(crate) fn is_read(key: &str) -> bool {
     [NAME, MASS, INERTIA, PRODUCTS].contains(&key)
 }
 
+/// Whether a key of a document that is no body itself is read, or is its name, which says nothing of its bodies.
+pub(crate) fn is_read_of_all(key: &str) -> bool {
+    [NAME, PRODUCTS].contains(&key)
+}
+
 /// Which key a body was meant to have by one that is not read: in other letters, with one letter wrong, or with
 /// another unit, or none. Files of other programs may have more keys than ours, so that all others mean nothing here.
 pub(crate) fn meant(key: &str) -> Option<&'static str> {

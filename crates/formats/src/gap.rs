@@ -18,7 +18,7 @@ pub enum GapKind {
     Computed,
     /// Inertias where the format has none.
     Misplaced,
-    /// Keys of bodies that mean nothing here, as files of other programs have.
+    /// Keys of bodies, and of the document around them, that mean nothing here, as files of other programs have.
     Keys,
 }
 
@@ -130,8 +130,7 @@ impl fmt::Display for Gap {
             GapKind::Keys => {
                 let (named, rest) = self.keys.split_at(self.keys.len().min(KEYS));
                 let named: Vec<String> = named.iter().map(|key| shortened(key)).collect();
-                let is =
-                    if self.keys.len() == 1 { "key of bodies is" } else { "keys of bodies are" };
+                let is = if self.keys.len() == 1 { "key is" } else { "keys are" };
                 write!(f, "{} {is} not read: {}", self.keys.len(), named.join(", "))?;
                 if rest.is_empty() { Ok(()) } else { write!(f, " and {} more", rest.len()) }
             }
@@ -163,7 +162,7 @@ impl Gaps {
         }
     }
 
-    /// Adds keys of bodies that are not read, each once, and the line of the first.
+    /// Adds keys that are not read, each once, and the line of the first.
     pub(crate) fn add_keys(&mut self, line: usize, keys: Vec<String>) {
         let (kind, count) = (GapKind::Keys, keys.len());
         self.0.push(Gap { kind, line, count, files: Vec::new(), keys });

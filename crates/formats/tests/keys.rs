@@ -51,15 +51,35 @@ fn meant(slip: &str) -> &'static str {
     }
 }
 
-#[derive(Clone, Copy, Debug)]
+/// Keys of a document around its bodies, with a value, and whether it is read.
+const AROUND: [(&str, &str, bool); 10] = [
+    ("units", "\"g mm2\"", false),
+    ("convention", "\"integrals\"", false),
+    ("about", "\"origin\"", false),
+    ("version", "3", false),
+    ("gravity", "[0, 0, -9.8]", false),
+    ("springs", "[{\"x\": 1}]", false),
+    ("moments", "{\"percent\": 10}", false),
+    ("mass_kg", "2", false),
+    ("name", "\"rover\"", true),
+    ("products", "\"integrals\"", true),
+];
+
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum Container {
     Bodies,
     ListOfBodies,
     List,
     Top,
+    /// The document is the first body itself.
+    Itself,
 }
 
-fn json(bodies: &[Vec<(String, String)>], container: Container) -> String {
+fn json(
+    bodies: &[Vec<(String, String)>],
+    container: Container,
+    around: &[(&str, &str, bool)],
+) -> String {
     let table = |body: &Vec<(String, String)>| {
         let entries: Vec<String> = body.iter().map(|(k, v)| format!("\"{k}\": {v}")).collect();
         format!("{{{}}}", entries.join(", "))
@@ -67,11 +87,14 @@ fn json(bodies: &[Vec<(String, String)>], container: Container) -> String {
     let tables: Vec<String> = bodies.iter().map(table).collect();
     let named: Vec<String> =
         tables.iter().enumerate().map(|(i, table)| format!("\"body {i}\": {table}")).collect();
+    let around: String =
+        around.iter().map(|(key, value, _)| format!("\"{key}\": {value}, ")).collect();
     match container {
-        Container::Bodies => format!("{{\"bodies\": {{{}}}}}", named.join(", ")),
-        Container::ListOfBodies => format!("{{\"bodies\": [{}]}}", tables.join(", ")),
+        Container::Bodies => format!("{{{around}\"bodies\": {{{}}}}}", named.join(", ")),
+        Container::ListOfBodies => format!("{{{around}\"bodies\": [{}]}}", tables.join(", ")),
         Container::List => format!("[{}]", tables.join(", ")),
-        Container::Top => format!("{{{}}}", named.join(", ")),
+        Container::Top => format!("{{{around}{}}}", named.join(", ")),
+        Container::Itself => tables[0].clone(),
     }
 }
 
@@ -82,9 +105,18 @@ proptest! {
             (any::<bool>(), prop::sample::subsequence(KEYS.to_vec(), 0..5)),
             1..5,
         ),
-        container in select(&[Container::Bodies, Container::ListOfBodies, Container::List, Container::Top][..]),
+        container in select(
+            &[Container::Bodies, Container::ListOfBodies, Container::List, Container::Top, Container::Itself][..],
+        ),
+        around in prop::sample::subsequence(AROUND.to_vec(), 0..5),
     ) {
         let mut bodies: Vec<Made> = bodies;
+        // A document that is no table, or a body itself, has none of its own.
+        let around = if matches!(container, Container::List | Container::Itself) { Vec::new() } else { around };
+        let is_around = |name: &str| around.iter().any(|(key, ..)| *key == name);
+        if container == Container::Itself {
+            bodies.truncate(1);
+        }
         for (_, keys) in &mut bodies {
             keys.dedup_by_key(|(key, ..)| *key);
         }
@@ -96,9 +128,16 @@ proptest! {
                 keys.chain(inertia).collect()
             })
             .collect();
-        let text = json(&written, container);
+        let text = json(&written, container, &around);
         let read = InertiaFile::parse(Path::new("a.json"), text.clone().into_bytes(), Products::default());
         if !bodies.iter().any(|(has_inertia, _)| *has_inertia) {
+            prop_assert!(read.is_err(), "{text}");
+            return Ok(());
+        }
+        // A document that is a body itself is refused for a slip in the sign of its products, as that of all bodies.
+        let slips = |key: &&(&str, &str, Fate)| key.2 == Slip && meant(key.0) == "products";
+        let has = |name: &str| bodies[0].1.iter().any(|(key, ..)| *key == name);
+        if container == Container::Itself && !has("products") && bodies[0].1.iter().any(|key| slips(&key)) {
             prop_assert!(read.is_err(), "{text}");
             return Ok(());
         }
@@ -118,8 +157,15 @@ proptest! {
         };
         let expected: Vec<_> = bodies.iter().filter(is_body).collect();
         prop_assert_eq!(file.bodies().len(), expected.len(), "{}", text);
-        let mut unread: Vec<&str> = Vec::new();
-        for (body, made) in file.bodies().iter().zip(&expected) {
+        let mut unread: Vec<String> =
+            around.iter().filter(|(.., is_read)| !is_read).map(|(key, ..)| (*key).to_owned()).collect();
+        let mut in_order = file.bodies().iter();
+        for (i, made) in bodies.iter().enumerate() {
+            if !is_body(&made) {
+                unread.push(format!("body {i}"));
+                continue;
+            }
+            let body = in_order.next().unwrap();
             let slip = made.1.iter().find(|(key, _, fate)| is_slip(made, key, *fate));
             match (body.inertia(), slip) {
                 (Err(FileBodyError::Key { key, .. }), Some((slip, ..))) => prop_assert_eq!(&key, slip),
@@ -127,7 +173,8 @@ proptest! {
                     prop_assert!(!made.0 && field == "inertia_kg_m2", "{}", text);
                 }
                 (Ok(matrix), None) => {
-                    let sign = if made.1.iter().any(|(key, ..)| *key == "products") { -0.1 } else { 0.1 };
+                    let has_products = made.1.iter().any(|(key, ..)| *key == "products");
+                    let sign = if has_products || is_around("products") { -0.1 } else { 0.1 };
                     prop_assert_eq!(matrix[(0, 1)], sign);
                     let has_mass = made.1.iter().any(|(key, ..)| *key == "mass_kg");
                     prop_assert_eq!(body.mass_kg(), has_mass.then_some(2.0));
@@ -135,8 +182,8 @@ proptest! {
                 other => prop_assert!(false, "{:?} of {}", other, text),
             }
             for (key, _, fate) in &made.1 {
-                if *fate != Read && !is_slip(made, key, *fate) && !unread.contains(key) {
-                    unread.push(key);
+                if *fate != Read && !is_slip(made, key, *fate) && !unread.iter().any(|one| one == key) {
+                    unread.push((*key).to_owned());
                 }
             }
         }

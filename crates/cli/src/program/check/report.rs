@@ -105,7 +105,7 @@ pub(super) struct Passed {
     pub(super) may_hold: bool,
 }
 
-/// Keys of the bodies of a file that mean nothing here.
+/// Keys of a file that mean nothing here.
 #[derive(Debug)]
 pub(super) struct UnreadKeys {
     pub(super) path: PathBuf,

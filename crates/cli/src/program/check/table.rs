@@ -169,7 +169,7 @@ fn passed_over(out: &mut impl Write, report: &Report, arguments: &CheckArgs) -> 
     writeln!(out)
 }
 
-/// Keys of bodies that mean nothing here, a line for each file.
+/// Keys that mean nothing here, a line for each file.
 fn unread_keys(out: &mut impl Write, report: &Report, arguments: &CheckArgs) -> io::Result<()> {
     let unread = &report.unread_keys;
     let most = if arguments.all { unread.len() } else { PASSED };
