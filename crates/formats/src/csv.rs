@@ -28,12 +28,12 @@ pub(crate) fn read(text: &Text, default: Products) -> Result<Vec<FileBody>, Refu
         let name =
             cell(NAME).map_or_else(String::new, |(name, _)| name.trim().replace("\"\"", "\""));
         let reading = if row.len() == header.row.len() {
-            reading(cell, products)
-                .map(|reading| reading.in_units(header.mass_kg, header.inertia_kg_m2))
+            header.unread(text, &row).map_or_else(|| reading(cell, products), Err)
         } else {
             let (found, allowed) = (row.len(), header.row.len());
             Err(FileBodyError::Count { field: "the row", found, allowed })
         };
+        let reading = reading.map(|reading| reading.in_units(header.mass_kg, header.inertia_kg_m2));
         // In the column of names, or the first one, as of an index.
         let first = row.first().map(|field| field.of(text.as_str()));
         let labels = [cell(NAME).map(|(name, _)| name), first];

@@ -287,6 +287,16 @@ pub enum FileBodyError {
         /// What it may hold.
         allowed: &'static str,
     },
+    /// A cell that would change the numbers of its row, in a column that is not read.
+    #[error("column {heading:?} says {value:?}: {why}")]
+    Unread {
+        /// The heading, shortened.
+        heading: String,
+        /// What the cell holds, shortened.
+        value: String,
+        /// Why it must not say so, and what to do.
+        why: &'static str,
+    },
     /// A key that must be a slip for one of those that are known.
     #[error("the key {key:?} is not read here: the keys are {allowed}")]
     Key {

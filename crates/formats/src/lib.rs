@@ -88,7 +88,7 @@ pub use kind::Format;
 pub use located::included_file;
 pub use mesh_file::MeshFileError;
 pub use new_file::{NewFile, WriteError};
-pub use parts::{PartNumbers, PartRow, PartsError, PartsFile, PartsProblem, PartsTable, Unread};
+pub use parts::{PartNumbers, PartRow, PartsError, PartsFile, PartsProblem, PartsTable};
 pub use plain::{is_same_file, must_write, read_text, write_file, write_file_as};
 pub use repair::{Change, Remedy, RepairError, copy_path, is_copy, write_copy, write_copy_of};
 pub use robot::{LinkNumbers, RobotFile, RobotLink};

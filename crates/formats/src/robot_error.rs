@@ -103,6 +103,7 @@ impl LinkProblem {
                 | FileBodyError::Shape { .. }
                 | FileBodyError::Word { .. }
                 | FileBodyError::Attribute { .. }
+                | FileBodyError::Unread { .. }
                 | FileBodyError::Key { .. }
                 | FileBodyError::Several { .. }
                 | FileBodyError::Both { .. } => true,

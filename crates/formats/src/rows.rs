@@ -53,6 +53,14 @@ impl Field {
     }
 }
 
+/// What R writes where nothing is known. It is an empty cell wherever that stands for no number.
+pub(crate) const NOT_KNOWN: &str = "NA";
+
+/// Whether a cell holds nothing.
+pub(crate) fn is_blank(cell: &str) -> bool {
+    cell.is_empty() || cell == NOT_KNOWN
+}
+
 /// The rows of a text that are neither blank nor comments.
 #[derive(Clone, Debug)]
 pub(crate) struct Rows<'a> {

@@ -1,11 +1,11 @@
 //! The header of a table of bodies: which columns hold the seven numbers, and in what units.
 
 use crate::{
-    FileProblem,
+    FileBodyError, FileProblem,
     body::{entry_of, shortened},
     error::Refusal,
     heading_sign::without_sign,
-    parts::heading::is_spread,
+    parts::{Unread, heading::is_spread},
     product_heading::is_unread_product,
     rows::{Field, Rows, headers, without_marks},
     spread,
@@ -80,6 +80,28 @@ pub(crate) struct Header {
     pub(crate) inertia_kg_m2: f64,
     /// The row of units below it, if there is one.
     pub(crate) units: Option<Vec<Field>>,
+    /// Columns that would change the inertia of a row, and are not read.
+    unread: Vec<(usize, Unread)>,
+}
+
+impl Header {
+    /// Why a row is refused that says by a cell which is not read that its inertia is another one.
+    pub(crate) fn unread(&self, text: &Text, row: &[Field]) -> Option<FileBodyError> {
+        self.unread.iter().find_map(|(at, what)| {
+            let (heading, cell) = (self.row.get(*at)?, row.get(*at)?);
+            let [heading, cell] = [heading, cell].map(|field| field.of(text.as_str()).trim());
+            what.problem(heading, cell)
+        })
+    }
+}
+
+/// What a column of a table of bodies would change, if it does: what else a list of parts must not have may be anything here, as the
+/// number of a sample, or the angle at which it was measured.
+fn would_change(heading: &str) -> Option<Unread> {
+    match Unread::of(heading)? {
+        what @ (Unread::Unit | Unread::Reference) => Some(what),
+        Unread::Count | Unread::Turn | Unread::Growth => None,
+    }
 }
 
 /// The unit of a column, as the heading and the row of units below say it; why there is none, if both do.
@@ -205,7 +227,12 @@ fn header(text: &Text, row: &[Field], below: Option<&[Field]>) -> Result<Option<
     }
     let units = below.and(row_below).map(<[Field]>::to_vec);
     let inertia_kg_m2 = of_inertia.si();
-    Ok(Some(Header { row: row.to_vec(), columns, mass_kg, inertia_kg_m2, units }))
+    let is_read = |at: usize| columns.contains(&Some(at));
+    let others = row.iter().enumerate().filter(|(at, _)| !is_read(*at));
+    let unread =
+        others.filter_map(|(at, field)| Some((at, would_change(field.of(text.as_str()))?)));
+    let unread = unread.collect();
+    Ok(Some(Header { row: row.to_vec(), columns, mass_kg, inertia_kg_m2, units, unread }))
 }
 
 /// Why a row is no header, where it would be one if what follows the names of the moments were units.

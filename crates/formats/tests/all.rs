@@ -21,3 +21,4 @@ mod several;
 mod slips;
 mod ten;
 mod units;
+mod unread;

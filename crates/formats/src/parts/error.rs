@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-use super::unread::Unread;
 use crate::{FileBodyError, FileProblem, UnitError, body::shortened, error::Refusal};
 
 /// How many headings a message names.
@@ -114,29 +113,6 @@ impl fmt::Display for PartsError {
 
 impl std::error::Error for PartsError {}
 
-/// Why a column that is not read must not say so, and what to do.
-fn because(what: Unread) -> &'static str {
-    match what {
-        Unread::Count => {
-            "a row is one part, and must have mass, mass centre and inertia of all of them together, or stand as many times as \
-             there are parts, each with its own mass centre; the column must be empty, 1 or one"
-        }
-        Unread::Turn => {
-            "angles are not read, for their order is not known: a part that is turned must have the quaternion of its attitude in \
-             attitude_x, attitude_y, attitude_z and attitude_w; the column must be empty, 0 or none"
-        }
-        Unread::Unit => {
-            "units are those of a column, and must stand in its heading or in a row below the header"
-        }
-        Unread::Reference => {
-            "the inertia is that about the part's own mass centre: the column must be empty, or say so, as \"cg\" or \"mass centre\""
-        }
-        Unread::Growth => {
-            "no growth allowance is added: the mass and the inertia must have it in them; the column must be empty, 0 or none"
-        }
-    }
-}
-
 /// What is wrong with a list of parts.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -179,16 +155,6 @@ pub enum PartsProblem {
         /// The heading.
         heading: String,
     },
-    /// A column that would change the numbers of the row, and is not read.
-    #[error("column {heading:?} says {value:?}: {}", because(*.what))]
-    Unread {
-        /// What it would change.
-        what: Unread,
-        /// The heading.
-        heading: String,
-        /// The cell.
-        value: String,
-    },
     /// A cell that says it is not known, in a column where an empty one stands for a number.
     #[error(
         "column {heading:?} says \"NA\", and what is not known is no number: the cell must hold a number, or be empty, which stands \
@@ -228,7 +194,7 @@ pub enum PartsProblem {
         /// The heading with one.
         other: String,
     },
-    /// A number is missing, none, or not finite, or the row has too many or too few.
+    /// A number is missing, none, or not finite, the row has too many or too few, or a cell that is not read would change them.
     #[error(transparent)]
     Number(#[from] FileBodyError),
     /// A shape that cannot be made.

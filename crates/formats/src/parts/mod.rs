@@ -9,7 +9,7 @@ mod unread;
 
 pub use error::{PartsError, PartsFile, PartsProblem};
 pub use row::{PartNumbers, PartRow};
-pub use unread::Unread;
+pub(crate) use unread::Unread;
 
 use std::collections::BTreeMap;
 
@@ -18,12 +18,12 @@ use crate::{
     body::shortened,
     error::Refusal,
     products_comment::stated_products,
-    rows::{Field, Rows, headers, without_marks},
+    rows::{Field, NOT_KNOWN, Rows, headers, without_marks},
     text::Text,
     units::{Unit, squeezed},
 };
 use heading::{Column, Heading};
-use row::{Cells, NOT_KNOWN};
+use row::Cells;
 
 /// The assembly of a list without assemblies.
 const WHOLE: &str = "whole";

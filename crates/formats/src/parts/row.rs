@@ -9,17 +9,11 @@ use super::unread::Unread;
 use crate::{
     FileBodyError, Products,
     body::{Number, shortened},
+    rows::{NOT_KNOWN, is_blank},
 };
 
 /// How far the four components of an attitude may be from a unit quaternion.
 const UNIT: f64 = 1e-3;
-
-/// What R writes where nothing is known. It is an empty cell wherever that stands for no number.
-pub(super) const NOT_KNOWN: &str = "NA";
-
-pub(super) fn is_blank(cell: &str) -> bool {
-    cell.is_empty() || cell == NOT_KNOWN
-}
 
 /// A row of a list: a part with its numbers, or an assembly without.
 #[derive(Clone, Debug, PartialEq)]
@@ -164,15 +158,12 @@ impl Cells<'_> {
 
     /// The first cell that would change the numbers of the row, and is not read.
     pub(super) fn unread(&self) -> Option<PartsProblem> {
-        let cells = self.columns.iter().zip(self.headings).zip(self.cells);
-        let problem = |((column, heading), cell): ((&Heading, &String), &String)| match *column {
-            Heading::Unread(what) if !is_blank(cell) && !what.is_neutral(cell) => {
-                let (heading, value) = (shortened(heading), shortened(cell));
-                Some(PartsProblem::Unread { what, heading, value })
-            }
+        let mut cells = self.columns.iter().zip(self.headings).zip(self.cells);
+        let problem = |((column, heading), cell): ((&Heading, &String), &String)| match column {
+            Heading::Unread(what) => what.problem(heading, cell),
             _ => None,
         };
-        cells.filter_map(problem).next()
+        cells.find_map(problem).map(PartsProblem::from)
     }
 
     /// The first cell of a part that is not known and would be read as a number: as zero, as the part's own axes, or as one part.

@@ -5,8 +5,9 @@ use serde_json::{Map, Value};
 
 use super::error::PartsProblem;
 use super::heading::{Column, Heading};
-use super::row::{Cells, boolean, is_blank};
+use super::row::{Cells, boolean};
 use crate::body::{Number, shortened};
+use crate::rows::is_blank;
 
 impl Cells<'_> {
     /// The shape, if there is one: none of a point.

@@ -146,8 +146,8 @@ fn columns_that_would_change_a_row_are_refused() {
         ("unit qty", "1", "4", "a row is one part"),
         ("R11", "0", "0.5", "angles are not read"),
         ("rotation matrix", "identity", "0 1 0; -1 0 0; 0 0 1", "angles are not read"),
-        ("inertia about", "CG", "origin", "about the part's own mass centre"),
-        ("MOI about", "own mass centre", "base", "about the part's own mass centre"),
+        ("inertia about", "CG", "origin", "about its own mass centre"),
+        ("MOI about", "own mass centre", "base", "about its own mass centre"),
     ] {
         assert_eq!(with(heading, neutral, "bus"), Ok(()), "{heading}");
         assert_eq!(with(heading, "", "bus"), Ok(()), "{heading}");

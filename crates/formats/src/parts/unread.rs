@@ -1,13 +1,16 @@
 //! Columns that would change the numbers of a row, and are not read.
 
 use crate::{
+    FileBodyError,
+    body::shortened,
+    rows::is_blank,
     spread::words,
     units::{Dimension, Unit, squeezed},
 };
 
 /// What would change the numbers of a row, and is not read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unread {
+pub(crate) enum Unread {
     /// How many parts a row is.
     Count,
     /// An angle by which the part is turned, or another form of its attitude.
@@ -183,7 +186,7 @@ const NONE: [&str; 9] = ["-", "--", "–", "—", "none", "nil", "zero", "n/a", 
 
 impl Unread {
     /// What a heading holds of this kind.
-    pub(super) fn of(heading: &str) -> Option<Self> {
+    pub(crate) fn of(heading: &str) -> Option<Self> {
         let lower = heading.to_lowercase();
         let all: Vec<&str> = words(&lower).filter(|word| !word.is_empty()).collect();
         let is_of = |(_, lists, beside): &&Words| {
@@ -195,8 +198,42 @@ impl Unread {
         KINDS.iter().find(is_of).map(|(kind, ..)| *kind)
     }
 
+    /// Why a cell under a heading of this kind is refused, if it says something that would change the row.
+    pub(crate) fn problem(self, heading: &str, cell: &str) -> Option<FileBodyError> {
+        let says_nothing = is_blank(cell) || self.is_neutral(cell);
+        (!says_nothing).then(|| FileBodyError::Unread {
+            heading: shortened(heading),
+            value: shortened(cell),
+            why: self.because(),
+        })
+    }
+
+    /// Why such a column must not say it, and what to do.
+    fn because(self) -> &'static str {
+        match self {
+            Self::Count => {
+                "a row is one part, and must have mass, mass centre and inertia of all of them together, or stand as many times as \
+                 there are parts, each with its own mass centre; the column must be empty, 1 or one"
+            }
+            Self::Turn => {
+                "angles are not read, for their order is not known: a part that is turned must have the quaternion of its attitude in \
+                 attitude_x, attitude_y, attitude_z and attitude_w; the column must be empty, 0 or none"
+            }
+            Self::Unit => {
+                "units are those of a column, and must stand in its heading or in a row below the header"
+            }
+            Self::Reference => {
+                "the inertia of a row is that about its own mass centre: the column must be empty, or say so, as \"cg\" or \
+                 \"mass centre\""
+            }
+            Self::Growth => {
+                "no growth allowance is added: the mass and the inertia must have it in them; the column must be empty, 0 or none"
+            }
+        }
+    }
+
     /// Whether a cell says nothing that would change the row.
-    pub(super) fn is_neutral(self, cell: &str) -> bool {
+    fn is_neutral(self, cell: &str) -> bool {
         let is_none = NONE.iter().any(|word| cell.eq_ignore_ascii_case(word));
         let of = |word: &str| word.trim_end_matches(['%', '°']).trim().parse::<f64>().ok();
         match self {

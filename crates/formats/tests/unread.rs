@@ -1,0 +1,113 @@
+//! Columns that say that the inertia of a row is another one: whoever reads the table refuses them, or reads the same numbers.
+
+use gyradius_formats::{FileBodyError, InertiaFile, PartsTable, Products, TenTable};
+use proptest::{prelude::*, sample::select};
+use std::path::Path;
+
+const REFERENCES: [&str; 5] = [
+    "inertia about",
+    "Inertia_about",
+    "MOI ref. point",
+    "moments about the point",
+    "\"inertia about\"",
+];
+const UNITS: [&str; 6] =
+    ["unit", "Units", "uom", "inertia_units", "unit of inertia", "units of the moments"];
+
+/// Cells that say nothing, and cells that do.
+const OF_REFERENCES: [(&str, bool); 13] = [
+    ("", true),
+    ("NA", true),
+    ("cg", true),
+    ("CoM", true),
+    ("own mass centre", true),
+    ("Centre of gravity", true),
+    ("origin", false),
+    ("point A", false),
+    ("launch frame", false),
+    ("not cg", false),
+    ("-", false),
+    ("0", false),
+    ("\"hinge, left\"", false),
+];
+const OF_UNITS: [(&str, bool); 12] = [
+    ("", true),
+    ("NA", true),
+    ("kg m2", true),
+    ("kg·m²", true),
+    ("SI", true),
+    ("1", true),
+    ("g mm2", false),
+    ("lb in2", false),
+    ("lbf in s2", false),
+    ("slug ft2", false),
+    ("kg mm2", false),
+    ("g", false),
+];
+
+proptest! {
+    #[test]
+    fn what_would_change_a_row_is_refused_by_all(
+        columns in prop::collection::vec(any::<bool>(), 1..3).prop_flat_map(|kinds| {
+            let column = |is_unit: bool| {
+                let headings = if is_unit { &UNITS[..] } else { &REFERENCES[..] };
+                let cells = if is_unit { &OF_UNITS[..] } else { &OF_REFERENCES[..] };
+                (select(headings), prop::collection::vec(select(cells), 3))
+            };
+            kinds.into_iter().map(column).collect::<Vec<_>>()
+        }),
+        at in 0..2_usize,
+        separator in select(&[",", ";", "\t"][..]),
+    ) {
+        let numbers = ["name,mass,cx,cy,cz,ixx,iyy,izz", "a,5,1,2,3,4,5,6", "b,5,1,2,3,4,5,6", "c,5,1,2,3,4,5,6"];
+        let lines: Vec<String> = numbers
+            .iter()
+            .enumerate()
+            .map(|(row, numbers)| {
+                let more = columns.iter().map(|(heading, cells)| if row == 0 { *heading } else { cells[row - 1].0 });
+                let more: Vec<&str> = more.collect();
+                let parts = if at == 0 { [more.join("\u{1}"), numbers.replace(',', "\u{1}")] }
+                    else { [numbers.replace(',', "\u{1}"), more.join("\u{1}")] };
+                parts.join("\u{1}").replace('\u{1}', separator)
+            })
+            .collect();
+        let text = lines.join("\n") + "\n";
+        let file = InertiaFile::parse(Path::new("t.csv"), text.clone().into_bytes(), Products::default()).unwrap();
+        let ten = TenTable::of(&file).unwrap();
+        prop_assert_eq!((file.bodies().len(), ten.rows().len()), (3, 3), "{}", text);
+        let list = PartsTable::read(text.as_bytes(), None);
+        let mut is_first = true;
+        for row in 0..3 {
+            let said = columns.iter().find(|(_, cells)| !cells[row].1);
+            let (body, ten) = (&file.bodies()[row], &ten.rows()[row]);
+            let Some((heading, cells)) = said else {
+                prop_assert_eq!(body.inertia().unwrap()[(1, 1)], 5.0);
+                prop_assert_eq!(ten.values().unwrap()[5], 5.0);
+                continue;
+            };
+            let plain = |cell: &str| cell.trim_matches('"').to_owned();
+            let error = body.inertia().unwrap_err();
+            prop_assert_eq!(ten.values().unwrap_err(), &error);
+            let FileBodyError::Unread { heading: named, value, .. } = error.clone() else { panic!("{text}: {error}") };
+            prop_assert_eq!((named, value), (plain(heading), plain(cells[row].0)), "{}", text);
+            // A list of parts is refused at its first row of these.
+            if std::mem::take(&mut is_first) {
+                let refused = list.as_ref().unwrap_err().to_string();
+                prop_assert!(refused.contains(&error.to_string()), "{refused} {error}");
+            }
+        }
+        prop_assert!(!is_first || list.is_ok(), "{text}: {list:?}");
+    }
+}
+
+/// Samples are numbered, and measured at angles: what a list of parts must not have is another column of a table of bodies.
+#[test]
+fn other_columns_of_bodies_may_be_anything() {
+    for heading in ["number", "qty", "n_parts", "roll_deg", "theta_z", "MGA %", "margin", "unit id"]
+    {
+        let text = format!("name,ixx,iyy,izz,{heading}\na,4,5,6,7\n");
+        let file =
+            InertiaFile::parse(Path::new("t.csv"), text.into_bytes(), Products::default()).unwrap();
+        assert_eq!(file.bodies()[0].inertia().unwrap()[(1, 1)], 5.0, "{heading}");
+    }
+}
