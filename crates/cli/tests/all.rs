@@ -15,6 +15,7 @@ mod fit;
 mod fit_joint;
 mod fit_robots;
 mod fleet;
+mod for_robots;
 mod kept;
 #[cfg(unix)]
 mod killed;

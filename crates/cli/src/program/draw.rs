@@ -24,7 +24,7 @@ pub(crate) fn draw(arguments: &DrawArgs) -> Result<ExitCode, Box<dyn Error>> {
     if let Some(robot) = arguments.scenario.as_deref().filter(|path| is_robot(path)) {
         return draw_robot(arguments, robot);
     }
-    if arguments.stated.is_any() || !arguments.links.is_empty() || arguments.inside.is_some() {
+    if arguments.stated.is_given() || !arguments.links.is_empty() || arguments.inside.is_some() {
         if arguments.scenario.as_deref() == Some(Path::new("-")) {
             return Err("-: a robot is not read from standard input: write it into a file first, as with `xacro arm.xacro -o arm.urdf`".into());
         }
@@ -34,8 +34,8 @@ pub(crate) fn draw(arguments: &DrawArgs) -> Result<ExitCode, Box<dyn Error>> {
             let path = path.display();
             return Err(format!("{path}: it is not a regular file, and a robot is only read from one: write it into a file first").into());
         }
-        return Err("--mass, --centre, --moments, --axes, --links and --inside are for robots (URDF, MJCF, SDF): a scenario says \
-                    itself what is uncertain"
+        return Err("--mass, --centre, --moments, --axes, --sigmas, --links and --inside are for robots (URDF, MJCF, SDF): a scenario \
+                    says itself what is uncertain"
             .into());
     }
     let file = file_of(arguments.output.as_deref());

@@ -205,8 +205,8 @@ fn warn_of_lost_paths(folder: &Path, written: &RobotFolder) {
 fn report(arguments: &DrawArgs, robot: &RobotFile, draw: &RobotDraw<'_>, place: &str) -> String {
     let (links, draws) = (draw.links().len(), arguments.runs.unwrap_or_default());
     let seed = arguments.seed.unwrap_or_default();
-    let sigmas = short(arguments.stated.sigmas);
-    let deviations = if arguments.stated.sigmas == 1.0 { "deviation" } else { "deviations" };
+    let sigmas = short(arguments.stated.sigmas());
+    let deviations = if arguments.stated.sigmas() == 1.0 { "deviation" } else { "deviations" };
     let mut out = format!(
         "{place}\n{links} link{}, {draws} draw{}, seed {seed}; ± is {sigmas} standard {deviations}\n",
         if links == 1 { "" } else { "s" },

@@ -24,9 +24,9 @@ pub(crate) struct StatedArgs {
     #[arg(long, value_name = "AMOUNT", allow_hyphen_values = true, value_parser = amount(StatedAmount::axes), help_heading = ROBOTS)]
     pub(crate) axes: Option<StatedAmount>,
 
-    /// Of a robot: how many standard deviations ± stands for in all of these
-    #[arg(long, value_name = "K", default_value_t = 1.0, help_heading = ROBOTS)]
-    pub(crate) sigmas: f64,
+    /// Of a robot: how many standard deviations ± stands for in all of these [default: 1]
+    #[arg(long, value_name = "K", help_heading = ROBOTS)]
+    sigmas: Option<f64>,
 }
 
 /// Under which the help has what is for robots alone.
@@ -45,12 +45,22 @@ impl StatedArgs {
         [self.mass, self.centre, self.moments, self.axes].iter().any(Option::is_some)
     }
 
+    /// Whether any of these options is there.
+    pub(crate) fn is_given(&self) -> bool {
+        self.is_any() || self.sigmas.is_some()
+    }
+
+    /// How many standard deviations ± stands for.
+    pub(crate) fn sigmas(&self) -> f64 {
+        self.sigmas.unwrap_or(1.0)
+    }
+
     /// The statements.
     ///
     /// # Errors
     /// A number is refused; the message names the option.
     pub(crate) fn statements(&self) -> Result<Statements, String> {
-        let sigmas = self.sigmas;
+        let sigmas = self.sigmas();
         let mass = self.mass.map(|amount| amount.mass_statement(sigmas)).transpose();
         let centre = self.centre.map(|amount| amount.centre_statement(sigmas)).transpose();
         let moments = self.moments.map(|amount| amount.moments_statement(sigmas)).transpose();
