@@ -41,8 +41,7 @@ struct Nominal {
     inertia_kg_m2: Option<[[f64; 3]; 3]>,
     radii_of_gyration_m: Option<[f64; 3]>,
     mass_kg: Option<f64>,
-    #[serde(default)]
-    mass_centre_m: [f64; 3],
+    mass_centre_m: Option<[f64; 3]>,
 }
 
 /// What the statements come to.
@@ -123,6 +122,9 @@ fn stated(text: &str) -> Result<Told, String> {
             return Err("nominal: it must have inertia_kg_m2, or mass_kg and radii_of_gyration_m, and not both".to_owned());
         }
     };
+    if mass_kg.is_none() && mass_centre_m.is_some() {
+        return Err("nominal.mass_centre_m: it needs nominal.mass_kg".to_owned());
+    }
     let inertia = Inertia::try_from(rows).map_err(|error| format!("nominal.{key}: {error}"))?;
     let statements = Statements { moments, products, axes, mass, centre };
     let model = statements
@@ -130,7 +132,7 @@ fn stated(text: &str) -> Result<Told, String> {
         .and_then(|()| statements.model(&inertia, mass_kg))
         .map_err(|error| error.to_string())?;
     let nominal = mass_kg.map(|mass| {
-        MassProperties::new(mass, mass_centre_m, inertia)
+        MassProperties::new(mass, mass_centre_m.unwrap_or_default(), inertia)
             .map_err(|error| format!("nominal.mass_centre_m: {error}"))
     });
     let body = nominal

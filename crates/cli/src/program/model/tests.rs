@@ -235,3 +235,58 @@ fn radii_of_gyration_are_moments() {
         assert!(message.contains(why), "{nominal}: {message}");
     }
 }
+
+/// Whatever is said has an effect on what is told, or is refused: of all files that say some of these things and not the others, each
+/// differs from the same one without one of them.
+#[test]
+fn nothing_is_said_without_an_effect() {
+    /// What is said, in a table, and what it stands beside.
+    const SAID: [(&str, &str, Option<usize>); 10] = [
+        ("nominal", "mass_kg = 10000.0", None),
+        ("nominal", "mass_centre_m = [0.1, -0.2, 1.5]", None),
+        ("moments", "percent = 10.0\nsigmas = 3", None),
+        ("products", "kg_m2 = 50.0\nsigmas = 3", None),
+        ("axes", "deg = 2.0\nsigmas = 3", None),
+        ("axes", "of = \"total\"", Some(4)),
+        ("mass", "percent = 1.0\nsigmas = 3", None),
+        ("centre", "mm = 30.0\nsigmas = 3", None),
+        ("centre", "arm_m = [0.0, 0.1, 1.0]", Some(7)),
+        ("inside", "box = { middle_m = [0.0, 0.0, 1.5], half_sides_m = [1.0, 1.0, 1.2] }", None),
+    ];
+    let has = |said: usize, i: usize| said >> i & 1 == 1;
+    let told = |said: usize| {
+        let mut text = "[nominal]\ninertia_kg_m2 = [[5000.0, 20.0, 2.0], [20.0, 4000.0, -50.0], [2.0, -50.0, 3000.0]]\n".to_owned();
+        let mut table = "nominal";
+        for (_, (name, keys, _)) in SAID.iter().enumerate().filter(|(i, _)| has(said, *i)) {
+            if *name != table {
+                text += &format!("[{name}]\n");
+                table = name;
+            }
+            text += &format!("{keys}\n");
+        }
+        let told = stated(&text)?;
+        let fragment = fragment(FragmentBody::Payload, &told).map_err(|error| error.to_string())?;
+        Ok::<_, String>(json(&told, FragmentBody::Payload, &fragment).unwrap())
+    };
+    let is_file = |said: &usize| {
+        let stands = |(i, (.., beside)): (usize, &(_, _, Option<usize>))| {
+            beside.is_none_or(|beside| !has(*said, i) || has(*said, beside))
+        };
+        // A region takes many draws, and is beside few others.
+        SAID.iter().enumerate().all(stands) && (!has(*said, 9) || said.count_ones() <= 4)
+    };
+    let files = (0..1 << SAID.len()).filter(is_file);
+    let outcomes: std::collections::BTreeMap<usize, _> =
+        files.map(|said| (said, told(said))).collect();
+    let mut count = 0;
+    for (said, outcome) in outcomes.iter().filter(|(_, outcome)| outcome.is_ok()) {
+        for i in (0..SAID.len()).filter(|i| has(*said, *i)) {
+            let Some(without) = outcomes.get(&(said & !(1 << i))) else { continue };
+            count += 1;
+            let named: Vec<&str> =
+                SAID.iter().enumerate().filter(|(i, _)| has(*said, *i)).map(|(_, s)| s.1).collect();
+            assert!(without != outcome, "{:?} has no effect in {named:?}", SAID[i].1);
+        }
+    }
+    assert!(count > 300, "{count}");
+}
