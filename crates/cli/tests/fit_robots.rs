@@ -109,12 +109,13 @@ fn links_are_samples_in_their_own_axes() {
         let found = fitted(name, &text);
         assert_eq!(found["unread"].as_array().unwrap().len(), 0, "{name}: {}", found["unread"]);
         let (mut wanted, mut given) = (Vec::new(), Vec::new());
-        for key in ["roots", "axes", "entries", "joint"] {
+        for key in ["roots", "axes", "nominal_inertia_kg_m2", "entry_deviation_kg_m2", "joint"] {
+            let before = wanted.len();
             numbers(&expected[key], key, &mut wanted);
             numbers(&found[key], key, &mut given);
+            assert!(wanted.len() > before, "{key}");
         }
         assert_eq!(wanted.len(), given.len(), "{name}");
-        assert!(wanted.len() > 60, "{name}");
         for ((path, a), (_, b)) in wanted.iter().zip(&given) {
             // Probabilities are found by simulation, of which rounding may turn a few.
             let close = if path.ends_with("p_value") || path.ends_with(".p") { 0.02 } else { 1e-6 };
@@ -136,4 +137,49 @@ fn links_are_samples_in_their_own_axes() {
     fs::write(scratch.path("l.urdf"), urdf(&bodies.urdf)).unwrap();
     let refused = scratch.run(&["fit", "l.urdf", "--parameters", "linear"]);
     assert_eq!(refused.status.code(), Some(2));
+}
+
+/// Where too few links are left for a fit, the error says of each why it was left out.
+#[test]
+fn links_that_are_left_out_are_told_where_the_rest_are_too_few() {
+    let bodies = Bodies::new();
+    let scratch = Scratch::new();
+    for kept in [0, 1, 3] {
+        for left_out in [1, 4, 30] {
+            // A pose that stands in the frame of something else, or no inertia at all.
+            let moved = |line: &str| line.replace("<pose>", "<pose relative_to=\"elsewhere\">");
+            let empty = |line: &str| {
+                let (start, _) = line.split_once("<inertial").unwrap();
+                format!("{start}</{}>", &start[1..5])
+            };
+            let of = |links: &str, change: &dyn Fn(&str) -> String| {
+                let change = |(i, line)| if i < kept { str::to_owned(line) } else { change(line) };
+                links.lines().take(kept + left_out).enumerate().map(change).collect::<String>()
+            };
+            let model = |links: &str| {
+                format!("<sdf version=\"1.9\"><model name=\"m\">{links}</model></sdf>")
+            };
+            for (name, text) in [
+                ("moved.sdf", model(&of(&bodies.sdf, &moved))),
+                ("empty.urdf", format!("<robot name=\"r\">{}</robot>", of(&bodies.urdf, &empty))),
+                (
+                    "empty.xml",
+                    format!("<mujoco><worldbody>{}</worldbody></mujoco>", of(&bodies.mjcf, &empty)),
+                ),
+            ] {
+                fs::write(scratch.path(name), text).unwrap();
+                let output = scratch.run(&["fit", name]);
+                let message = String::from_utf8(output.stderr).unwrap();
+                assert_eq!(output.status.code(), Some(2), "{name}: {message}");
+                let told = |i: usize| message.contains(&format!(" b{}: ", kept + i));
+                assert!(
+                    message.contains(&format!("the number of samples is {kept}: ")),
+                    "{message}"
+                );
+                assert!((0..left_out.min(10)).all(told), "{name}: {message}");
+                let more = format!("and {} more", left_out.saturating_sub(10));
+                assert_eq!(message.contains(&more), left_out > 10, "{name}: {message}");
+            }
+        }
+    }
 }

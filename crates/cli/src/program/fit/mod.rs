@@ -52,7 +52,7 @@ fn run(arguments: &FitArgs) -> Result<bool, Box<dyn Error>> {
     let table = table::read(path, products, form, arguments.skip_impossible)?;
     let file = path.display();
     let fit = PrincipalFit::new(&table.samples)
-        .map_err(|error| format!("{}: {error}", table.place(path, error.sample())))?;
+        .map_err(|error| table.refused(path, error.sample(), &error))?;
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
     let assessment = progress::show(fit.simulations(), "simulated tables", |report| {
         fit.assess_with(&mut rng, report)
@@ -61,7 +61,7 @@ fn run(arguments: &FitArgs) -> Result<bool, Box<dyn Error>> {
         .map_err(|error| format!("{file}: {error}"))?;
     let moments = EntryMoments::of(fit.law());
     let joint = table.bodies.as_deref().map(joint::Joint::new).transpose();
-    let joint = joint.map_err(|error| format!("{}: {error}", table.place(path, error.body())))?;
+    let joint = joint.map_err(|error| table.refused(path, error.body(), &error))?;
     let mut report = report::text(arguments, &table, &fit, &moments, &assessment);
     report.push_str(&joint.as_ref().map_or_else(String::new, joint::Joint::text));
     let json =

@@ -8,7 +8,10 @@ use gyradius_formats::{
 };
 use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties, Repair, RepairMethod};
 use nalgebra::Matrix3;
-use std::{collections::HashMap, path::Path};
+use std::{collections::HashMap, error::Error, path::Path};
+
+/// Parts of a file that were not read, of which an error names no more.
+const NAMED: usize = 10;
 
 /// Why a table is not fitted.
 #[derive(Debug, thiserror::Error)]
@@ -65,12 +68,25 @@ pub(super) struct Table {
 }
 
 impl Table {
-    /// The file with the line of a sample, where an error is of one.
-    pub(super) fn place(&self, path: &Path, sample: Option<usize>) -> String {
+    /// Why the samples are refused: with the line of the sample, where an error is of one, or else with what of the file was left out, for
+    /// that may be the samples that are missing.
+    pub(super) fn refused(&self, path: &Path, sample: Option<usize>, error: &dyn Error) -> String {
         let file = path.display();
-        match sample.and_then(|index| self.lines.get(index)) {
-            Some(line) => format!("{file}:{line}"),
-            None => file.to_string(),
+        if let Some(line) = sample.and_then(|index| self.lines.get(index)) {
+            return format!("{file}:{line}: {error}");
+        }
+        let aside = (self.aside > 0).then(|| format!("samples that no body has: {}", self.aside));
+        let left_out: Vec<&String> = aside.iter().chain(&self.unread).collect();
+        let mut message = format!("{file}: {error}");
+        if !left_out.is_empty() {
+            message += "; of the file was left out:";
+        }
+        for one in left_out.iter().take(NAMED) {
+            message += &format!("\n  {one}");
+        }
+        match left_out.len().saturating_sub(NAMED) {
+            0 => message,
+            more => format!("{message}\n  and {more} more"),
         }
     }
 }
