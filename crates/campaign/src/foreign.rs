@@ -1,5 +1,6 @@
 //! Tables of numbers that other programs wrote, a row for each run: Parquet, a folder of Parquet files, or CSV.
 
+mod models;
 mod of_csv;
 mod of_folder;
 mod of_parquet;
@@ -14,6 +15,7 @@ use std::{
     sync::Arc,
 };
 
+use models::Models;
 use of_csv::{CsvText, csv_columns, scan_csv};
 use of_folder::{Folder, NOT_REGULAR, PARQUET, has_parquet_name};
 use of_parquet::{parquet_columns, scan_parquet};
@@ -71,6 +73,10 @@ struct StatusOf {
 
 /// The numbers of some consecutive rows: of each column, one for each row, none where a cell is empty.
 pub type Columns = [Vec<Option<f64>>];
+
+/// The models of some consecutive rows, each as a number that stands for it in this scan; none where a cell is empty, or there is no column
+/// `model`.
+pub type OfModels = [Option<u64>];
 
 impl ForeignTable {
     /// Opens a file, or a folder of Parquet files, which are taken in the order of their names. What begins as Parquet does is
@@ -284,14 +290,35 @@ impl ForeignTable {
         written: &[String],
         mut look: impl FnMut(&Columns),
     ) -> Result<(), ForeignError> {
-        let columns = (measured, written);
+        self.scan_all((measured, written), None, |numbers, _| look(numbers))
+    }
+
+    /// The same, and the model that each row is of, as its column `model` says, in any letters.
+    ///
+    /// # Errors
+    /// As [`scan`](Self::scan).
+    pub fn scan_of_models(
+        &self,
+        measured: &[String],
+        written: &[String],
+        look: impl FnMut(&Columns, &OfModels),
+    ) -> Result<(), ForeignError> {
+        self.scan_all((measured, written), Some(Models::default()), look)
+    }
+
+    fn scan_all(
+        &self,
+        columns: (&[String], &[String]),
+        mut models: Option<Models>,
+        mut look: impl FnMut(&Columns, &OfModels),
+    ) -> Result<(), ForeignError> {
         let status = StatusOf { is_there: self.is_run_table(), of_study: self.origin.is_some() };
         for file in &self.files {
             match &self.form {
-                Form::Parquet => scan_parquet(file, columns, status, &mut look)?,
+                Form::Parquet => scan_parquet(file, columns, status, models.as_mut(), &mut look)?,
                 Form::Csv { separator, text } => {
                     let form = (*separator, self.columns.len());
-                    scan_csv(file, text, form, columns, &mut look)?;
+                    scan_csv(file, text, form, columns, models.as_mut(), &mut look)?;
                 }
             }
         }
@@ -337,6 +364,13 @@ fn status(columns: &[String]) -> Option<usize> {
 fn place_of(columns: &[String], own: &Column) -> Option<usize> {
     let exact = columns.iter().position(|name| name == own.name());
     exact.or_else(|| columns.iter().position(|name| is_alike(name, own.name())))
+}
+
+/// The same of a column that there is once.
+fn only_place(columns: &[String], own: &Column) -> Option<usize> {
+    let place = place_of(columns, own)?;
+    let is_again = |name: &&String| **name == columns[place];
+    (columns.iter().filter(is_again).count() == 1).then_some(place)
 }
 
 /// Whether a heading is that of a run table's column, in any letters.

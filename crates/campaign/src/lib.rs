@@ -112,7 +112,7 @@ pub use folder::{
     why_unknown,
 };
 pub use forecast::{Forecast, rough_size, rough_time};
-pub use foreign::{Columns, ForeignError, ForeignTable, RowsError, TwiceError};
+pub use foreign::{Columns, ForeignError, ForeignTable, OfModels, RowsError, TwiceError};
 pub use format::{Extent, FormatError, TableFormat, TableWriter};
 pub use gyradius_statistics::Verdict;
 pub use hash::sha256;

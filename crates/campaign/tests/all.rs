@@ -13,5 +13,6 @@ mod kept;
 mod requirement;
 mod row_order;
 mod scratch;
+mod several_models;
 mod tables_of_others;
 mod together;

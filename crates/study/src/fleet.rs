@@ -2,7 +2,11 @@
 
 use gyradius_campaign::{Column, Counting, ForeignError, ForeignTable, Kind, Spans};
 use serde::{Deserialize, Serialize};
-use std::{borrow::Cow, collections::BTreeSet, fmt};
+use std::{
+    borrow::Cow,
+    collections::{BTreeMap, BTreeSet},
+    fmt,
+};
 
 /// Vehicles, each of which flies so many times.
 ///
@@ -96,10 +100,12 @@ impl Fleet {
         };
         let names = [run, vehicle, flight];
         let mut seen = SeenFlights::default();
-        let read = table.scan_beside(&[], &names, |columns| {
+        let read = table.scan_of_models(&[], &names, |columns, models| {
             let [runs, vehicles, flights] = columns else { return };
-            for ((run, vehicle), flight) in runs.iter().zip(vehicles).zip(flights) {
-                seen.add([*run, *vehicle, *flight]);
+            for (((run, vehicle), flight), model) in
+                runs.iter().zip(vehicles).zip(flights).zip(models)
+            {
+                seen.add(*model, [*run, *vehicle, *flight]);
             }
         });
         match (read, seen.each()) {
@@ -139,21 +145,22 @@ impl Fleet {
     }
 }
 
-/// That no flight stands twice in a table without a column `model`, which names its rows by their run, vehicle and flight. Of one with a model, judging
-/// tells.
+/// That no flight stands twice among the rows that no column `model` says the model of, which their run, vehicle and flight name. Of those with a model,
+/// judging tells.
 fn again(table: &ForeignTable) -> Result<(), ForeignError> {
     let [vehicle, flight] = Fleet::columns().map(|column| table.spelled(column.name()).cloned());
-    let (None, Some(run), Some(vehicle), Some(flight)) =
-        (table.spelled("model"), table.spelled(Column::RUN).cloned(), vehicle, flight)
+    let (Some(run), Some(vehicle), Some(flight)) =
+        (table.spelled(Column::RUN).cloned(), vehicle, flight)
     else {
         return Ok(());
     };
     let names = [run, vehicle, flight];
     // Flights that are no numbers are those of another program.
     let each = |look: &mut dyn FnMut([u64; 3])| {
-        let read = table.scan_beside(&[], &names, |columns| {
+        let read = table.scan_of_models(&[], &names, |columns, models| {
             let [runs, vehicles, flights] = columns else { return };
-            for ((run, vehicle), flight) in runs.iter().zip(vehicles).zip(flights) {
+            let rows = runs.iter().zip(vehicles).zip(flights).zip(models);
+            for (((run, vehicle), flight), _) in rows.filter(|(_, model)| model.is_none()) {
                 let whole = |x: &Option<f64>| x.and_then(Column::run_named);
                 if let (Some(run), Some(vehicle), Some(flight)) =
                     (whole(run), whole(vehicle), whole(flight))
@@ -184,16 +191,17 @@ fn again(table: &ForeignTable) -> Result<(), ForeignError> {
     }
 }
 
-/// Vehicles, each counted once, in flat memory where they are in order.
+/// Vehicles of each model, each counted once, in flat memory where they are in order.
 #[derive(Debug, Default)]
 struct Counted {
-    seen: Spans,
+    seen: BTreeMap<Option<u64>, Spans>,
     count: u64,
 }
 
 impl Counted {
-    fn add(&mut self, vehicle: u64) {
-        self.count += u64::from(self.seen.add(vehicle, 0).is_ok());
+    fn add(&mut self, model: Option<u64>, vehicle: u64) {
+        let seen = self.seen.entry(model).or_default();
+        self.count += u64::from(seen.add(vehicle, 0).is_ok());
     }
 }
 
@@ -211,19 +219,19 @@ struct SeenFlights {
 }
 
 impl SeenFlights {
-    /// Adds a row: its run, vehicle and flight.
-    fn add(&mut self, row: [Option<f64>; 3]) {
-        self.unclear |= self.added(row).is_none();
+    /// Adds a row of a model: its run, vehicle and flight.
+    fn add(&mut self, model: Option<u64>, row: [Option<f64>; 3]) {
+        self.unclear |= self.added(model, row).is_none();
     }
 
     /// The same; none if the three do not belong together.
-    fn added(&mut self, row: [Option<f64>; 3]) -> Option<()> {
+    fn added(&mut self, model: Option<u64>, row: [Option<f64>; 3]) -> Option<()> {
         let whole = |place: usize| Column::run_named(row[place]?);
         let (run, vehicle, flight) = (whole(0)?, whole(1)?, whole(2)?);
         self.least = self.least.max(flight.checked_add(1)?);
-        self.vehicles.add(vehicle);
+        self.vehicles.add(model, vehicle);
         if flight == 0 {
-            self.begun.add(vehicle);
+            self.begun.add(model, vehicle);
         }
         let before = run.checked_sub(flight)?;
         if vehicle == 0 {
@@ -285,12 +293,12 @@ mod tests {
             let fleet = Fleet::new(vehicles, flights);
             let mut seen = SeenFlights::default();
             let runs: Vec<u64> = chosen.iter().map(|index| index.index((vehicles * flights) as usize) as u64).collect();
-            runs.iter().for_each(|run| seen.add(row(fleet, *run)));
+            runs.iter().for_each(|run| seen.add(None, row(fleet, *run)));
             let least = runs.iter().map(|run| run % flights + 1).max().unwrap();
             let is_known = runs.iter().any(|run| *run >= flights);
             prop_assert_eq!(seen.each(), Some(if is_known { flights } else { least }));
             let other = Fleet::new(vehicles + 1, other);
-            seen.add(row(other, other.runs() - 1));
+            seen.add(None, row(other, other.runs() - 1));
             if is_known && other.flights != flights {
                 prop_assert_eq!(seen.each(), None);
             }
@@ -298,7 +306,7 @@ mod tests {
                 let mut seen = SeenFlights::default();
                 let mut of_none = row(fleet, runs[0]);
                 of_none[place] = Some(wrong).filter(|x| !x.is_nan());
-                seen.add(of_none);
+                seen.add(None, of_none);
                 prop_assert_eq!(seen.each(), None);
             }
         }
@@ -312,13 +320,18 @@ mod tests {
             rows in prop::collection::vec((0..4_u8, 0..3_u8, 0..2_u8), 1..6),
             is_fleet in any::<bool>(),
             names in prop::sample::select(vec![["run", "vehicle", "flight"], ["Run", "VEHICLE", " flight"]]),
-            has_model in any::<bool>(),
+            (head, cell, has_model) in prop::sample::select(vec![
+                ("", "", false),
+                (",model", ",a", true),
+                (",Model", ",a", true),
+                // A cell that names no model.
+                (",model", ",", false),
+            ]),
         ) {
             let rows: Vec<(u8, u8, u8)> = rows
                 .into_iter()
                 .map(|(run, vehicle, flight)| (if is_fleet { 2 * vehicle + flight } else { run }, vehicle, flight))
                 .collect();
-            let (head, cell) = if has_model { (",model", ",a") } else { ("", "") };
             let [run, vehicle, flight] = names;
             let mut csv = format!("x,{run},{vehicle},{flight}{head}\n");
             rows.iter().for_each(|(run, vehicle, flight)| csv += &format!("1,{run},{vehicle},{flight}{cell}\n"));
@@ -327,6 +340,39 @@ mod tests {
             let is_refused = Fleet::first_flights(table).is_err_and(|error| error.to_string().contains("a run counts once"));
             // Of a model and a run, judging tells.
             prop_assert_eq!(is_refused, distinct.len() < rows.len() && !has_model, "{}", csv);
+        }
+
+        /// Vehicles are those of a model: of each model it is known which have no first flight, in any order of the rows.
+        #[test]
+        fn vehicles_without_a_first_flight_are_those_of_a_model(
+            (models, vehicles, flights) in (1..4_u64, 1..6_u64, 2..4_u64),
+            left_out in prop::collection::vec(prop::bool::weighted(0.3), 3 * 5 * 3),
+            order in prop::collection::vec(any::<u32>(), 3 * 5 * 3),
+            heads in prop::sample::select(vec!["model,run,vehicle,flight", "Model,RUN,Vehicle, flight"]),
+        ) {
+            let fleet = Fleet::new(vehicles, flights);
+            let rows = (0..models).flat_map(|model| (0..fleet.runs()).map(move |run| (model, run)));
+            let rows = rows.zip(&left_out).filter(|(_, left_out)| !**left_out).map(|(row, _)| row);
+            let mut rows: Vec<(u32, (u64, u64))> = order.into_iter().zip(rows).collect();
+            rows.sort();
+            let of = |first: bool| -> BTreeSet<(u64, u64)> {
+                let rows = rows.iter().map(|(_, (model, run))| (*model, fleet.place(*run)));
+                rows.filter(|(_, (_, flight))| !first || *flight == 0).map(|(model, (vehicle, _))| (model, vehicle)).collect()
+            };
+            let (all, begun) = (of(false).len(), of(true).len());
+            // The flights of each are known, and are several.
+            prop_assume!(rows.iter().any(|(_, (_, run))| *run >= flights));
+            let line = |(_, (model, run)): &(u32, (u64, u64))| {
+                let (vehicle, flight) = fleet.place(*run);
+                format!("{model},{run},{vehicle},{flight},1\n")
+            };
+            let csv = format!("{heads},y\n{}", rows.iter().map(line).collect::<String>());
+            let table = ForeignTable::read_csv("it.csv".as_ref(), csv.as_bytes()).unwrap();
+            let (table, note) = Fleet::first_flights(table).unwrap();
+            let said = format!("flight 0, of {} of {all} vehicles is not in the table", all - begun);
+            prop_assert_eq!(note.as_ref().is_some_and(|note| note.contains(&said)), begun < all, "{}{:?}", csv, note);
+            prop_assert_eq!(note.is_some(), begun < all);
+            prop_assert_eq!(table.counting().group(), flights);
         }
     }
 }

@@ -2,7 +2,10 @@
 
 use std::{fs::File, io::Read, path::Path, sync::Arc};
 
-use super::{Columns, ForeignError, places, reason::no_reason, status, written::number};
+use super::{
+    Columns, ForeignError, OfModels, models::Models, places, reason::no_reason, status,
+    written::number,
+};
 use crate::{
     csv_lines::CsvLines,
     failure::{Failure, OK},
@@ -87,7 +90,8 @@ pub(super) fn scan_csv(
     text: &CsvText,
     form: (u8, usize),
     (measured, written): (&[String], &[String]),
-    look: &mut impl FnMut(&Columns),
+    mut models: Option<&mut Models>,
+    look: &mut impl FnMut(&Columns, &OfModels),
 ) -> Result<(), ForeignError> {
     let mut reader = reader(path, text, form)?;
     let names = reader.headers().map_err(|error| broken(path, &error))?;
@@ -95,6 +99,7 @@ pub(super) fn scan_csv(
     let places = places(path, &there, measured.iter().chain(written))?;
     let status = status(&there);
     let mut some: Vec<Vec<Option<f64>>> = vec![Vec::new(); places.len()];
+    let (place_of_model, mut of_models) = (Models::place(&there), Vec::new());
     let mut row = csv::StringRecord::new();
     let mut last = None;
     loop {
@@ -127,21 +132,26 @@ pub(super) fn scan_csv(
                     |x: &f64| ended || column >= measured.len() || Failure::has_number(*x);
                 numbers.push(number.filter(is_taken));
             }
+            if let Some(models) = &mut models {
+                let cell = place_of_model.and_then(|place| row.get(place));
+                of_models.push(cell.and_then(|cell| models.number(cell)));
+            }
             Ok(())
         });
         if let Err(error) = taken {
             return Err(open_quotation(path, &mut reader, last).unwrap_or(error));
         }
         if some.first().is_some_and(|numbers| numbers.len() == TOGETHER) {
-            look(&some);
+            look(&some, &of_models);
             some.iter_mut().for_each(Vec::clear);
+            of_models.clear();
         }
     }
     if let Some(open) = open_quotation(path, &mut reader, last) {
         return Err(open);
     }
     if some.first().is_some_and(|numbers| !numbers.is_empty()) {
-        look(&some);
+        look(&some, &of_models);
     }
     Ok(())
 }

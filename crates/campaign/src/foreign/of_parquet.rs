@@ -10,7 +10,9 @@ use parquet::{
 };
 use std::{collections::HashMap, fs::File, path::Path};
 
-use super::{Columns, ForeignError, StatusOf, places, reason::no_reason, status};
+use super::{
+    Columns, ForeignError, OfModels, StatusOf, models::Models, places, reason::no_reason, status,
+};
 use crate::{
     failure::{Failure, OK},
     runs_error::said,
@@ -38,7 +40,8 @@ pub(super) fn scan_parquet(
     path: &Path,
     (measured, written): (&[String], &[String]),
     known: StatusOf,
-    look: &mut impl FnMut(&Columns),
+    mut models: Option<&mut Models>,
+    look: &mut impl FnMut(&Columns, &OfModels),
 ) -> Result<(), ForeignError> {
     let failed = |error: ParquetError| unread(path, &error);
     let reader = open(path).map_err(failed)?;
@@ -94,11 +97,14 @@ pub(super) fn scan_parquet(
             return Err(wrong(place, &problem));
         }
     }
+    let is_asked = |_: &usize| models.is_some();
+    let of_model = Models::place(&there).filter(is_asked);
+    let of_model = of_model.filter(|place| schema.column(*place).max_rep_level() == 0);
     let mut first = 0;
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(failed)?;
         let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
-        for place in places.iter().chain(&status) {
+        for place in places.iter().chain(&status).chain(&of_model) {
             if let Some(problem) = unread_codec(group.metadata().column(*place).compression()) {
                 return Err(wrong(*place, &problem));
             }
@@ -128,7 +134,14 @@ pub(super) fn scan_parquet(
                 numbers.for_each(|number| *number = number.filter(|x| Failure::has_number(*x)));
             }
         }
-        look(&numbers);
+        let mut of_models = vec![None; if models.is_some() { rows } else { 0 }];
+        if let (Some(place), Some(models)) = (of_model, &mut models) {
+            let whole = Whole::of(&schema.column(place)).unwrap_or(Whole::Signed);
+            let cells = group.get_column_reader(place).and_then(|cells| texts(cells, rows, whole));
+            let cells = cells.map_err(failed)?;
+            of_models = cells.iter().map(|cell| models.number(cell.as_deref()?)).collect();
+        }
+        look(&numbers, &of_models);
         first += rows;
     }
     Ok(())

@@ -10,7 +10,7 @@ use super::{
     ForeignError, ForeignTable, Form,
     of_csv::{CsvText, broken, reader},
     of_parquet::{Whole, names, numbers, open, texts, unread, unread_codec},
-    place_of,
+    only_place,
     written::number,
 };
 use crate::{column::Column, spans::Spans};
@@ -77,12 +77,7 @@ impl ForeignTable {
 /// Where a table says which run a row is, by the columns `model` and `run`, each of which it has once.
 fn own_places(columns: &[String]) -> Option<[usize; 2]> {
     let [model, run, _] = Column::first();
-    let only = |own: &Column| {
-        let place = place_of(columns, own)?;
-        let is_again = |name: &String| *name == columns[place];
-        (columns.iter().filter(|name| is_again(name)).count() == 1).then_some(place)
-    };
-    Some([only(&model)?, only(&run)?])
+    Some([only_place(columns, &model)?, only_place(columns, &run)?])
 }
 
 fn look_parquet(path: &Path, mut look: impl FnMut(&str, Option<f64>)) -> Result<(), ForeignError> {

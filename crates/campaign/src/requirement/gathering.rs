@@ -275,8 +275,8 @@ impl Tally {
     }
 }
 
-/// The worse run first, of equal ones the one of the smaller number. Beside a limit that is very large, the excess rounds to
-/// the same in runs of different numbers.
+/// The worse run first, of equal ones the one of the smaller number, and of runs of several models that share one the one of the smaller value. Beside
+/// a limit that is very large, the excess rounds to the same in runs of different values.
 fn worse(bound: Bound, a: &RunBeyond, b: &RunBeyond) -> Ordering {
     let rounded_away = match bound {
         Bound::AtMost(_) => b.value.total_cmp(&a.value),
@@ -284,5 +284,9 @@ fn worse(bound: Bound, a: &RunBeyond, b: &RunBeyond) -> Ordering {
         // The same excess is that of a number at either limit.
         Bound::Between(..) => Ordering::Equal,
     };
-    b.excess.total_cmp(&a.excess).then(rounded_away).then(a.run.cmp(&b.run))
+    b.excess
+        .total_cmp(&a.excess)
+        .then(rounded_away)
+        .then(a.run.cmp(&b.run))
+        .then(a.value.total_cmp(&b.value))
 }

@@ -12,9 +12,12 @@ pub(super) struct Groups {
     /// Groups all runs of which were seen, and of which one counts at least, and those of them that keep the requirement.
     pub(super) whole: u64,
     pub(super) keeping: u64,
-    /// Of the other groups.
-    parts: BTreeMap<u64, Seen>,
+    /// Of the other groups, each of a model, if that is known.
+    parts: BTreeMap<Group, Seen>,
 }
+
+/// A group of a model, which may be one of several in a table: the model's number, and that of the group among those of the model.
+type Group = (Option<u64>, u64);
 
 /// Runs of a group that were seen, those of them that count, and those that fail.
 #[derive(Clone, Copy, Debug, Default)]
@@ -38,11 +41,16 @@ impl Groups {
         Self { size, probability, whole: 0, keeping: 0, parts: BTreeMap::new() }
     }
 
-    /// Adds runs that come one after the other, and whether each fails the requirement; none of those that do not count.
-    pub(super) fn add(&mut self, first: u64, runs: impl Iterator<Item = Option<bool>>) {
-        let mut now: Option<(u64, Seen)> = None;
+    /// Adds runs of a model that come one after the other, and whether each fails the requirement; none of those that do not count.
+    pub(super) fn add(
+        &mut self,
+        model: Option<u64>,
+        first: u64,
+        runs: impl Iterator<Item = Option<bool>>,
+    ) {
+        let mut now: Option<(Group, Seen)> = None;
         for (run, fails) in (first..).zip(runs) {
-            let group = run / self.size;
+            let group = (model, run / self.size);
             let mut seen = match now {
                 Some((own, seen)) if own == group => seen,
                 Some((other, seen)) => {
@@ -67,7 +75,7 @@ impl Groups {
         other.parts.into_iter().for_each(|(group, seen)| self.take(group, seen));
     }
 
-    fn take(&mut self, group: u64, mut seen: Seen) {
+    fn take(&mut self, group: Group, mut seen: Seen) {
         seen.add(self.parts.remove(&group).unwrap_or_default());
         if seen.runs < self.size {
             self.parts.insert(group, seen);
@@ -99,7 +107,7 @@ mod tests {
             blocks.sort_by_key(|(i, _)| order[*i]);
             let mut parts = [Groups::new(size, probability), Groups::new(size, probability)];
             for (n, (i, runs)) in blocks.into_iter().enumerate() {
-                parts[n % 2].add((i * block) as u64, runs.iter().copied());
+                parts[n % 2].add(None, (i * block) as u64, runs.iter().copied());
             }
             let [mut whole, other] = parts;
             whole.merge(other);

@@ -76,7 +76,7 @@ impl Judging {
     fn count_groups(&self, block: &Table) -> Vec<Groups> {
         let mut counted = new_groups(&self.gatherings, self.group);
         for (gathering, groups) in self.gatherings.iter().zip(&mut counted) {
-            groups.add(block.first(), gathering.requirement.failing(block).into_iter());
+            groups.add(None, block.first(), gathering.requirement.failing(block).into_iter());
         }
         counted
     }

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     column::Column,
-    foreign::{Columns, ForeignTable},
+    foreign::{Columns, ForeignTable, OfModels},
 };
 
 impl Judgement {
@@ -42,12 +42,9 @@ impl Judgement {
         let gathering =
             |r: &Requirement| Gathering::new(r.clone(), runs, group).looked_at(counting.looks());
         let mut gatherings: Vec<Gathering> = requirements.iter().map(gathering).collect();
-        // Of runs that have something in common it must be known which they are.
         let of_groups = group > 1;
-        let numbering = if of_groups { Numbering::AnyOrder } else { Numbering::of(table) };
-        // A table of groups that has no such column is refused by the name that it should have.
-        let run = || table.spelled(Column::RUN).cloned().unwrap_or_else(|| Column::RUN.to_owned());
-        let run_column: Vec<String> = numbering.is_by_column().then(run).into_iter().collect();
+        let numbering = Numbering::of(table, group)?;
+        let run_column: Vec<String> = numbering.column(table).into_iter().collect();
         let new_groups = |r: &Requirement| Groups::new(group, r.probability());
         let mut groups: Vec<Groups> =
             if of_groups { requirements.iter().map(new_groups).collect() } else { Vec::new() };
@@ -65,7 +62,7 @@ impl Judgement {
                     .collect();
             }
             let (mut first, mut all_known) = (0, true);
-            table.scan_beside(&names, &run_column, |numbers| {
+            let mut look = |numbers: &Columns, models: &OfModels| {
                 let rows = numbers.first().map_or(0, Vec::len);
                 let row = first;
                 first += rows as u64;
@@ -84,20 +81,24 @@ impl Judgement {
                 };
                 gatherings.par_iter().zip(&mut parts).for_each(|(gathering, part)| {
                     let Some(part) = part else { return };
-                    let of_runs = (row..).zip(&runs).zip(number(gathering));
-                    let first = of_runs.filter(|((_, run), _)| run.is_multiple_of(group));
-                    let placed = first.map(|((row, run), number)| match numbering {
-                        Numbering::Rows | Numbering::InOrder => (*run, row, number),
-                        Numbering::AnyOrder => (*run, run / group, number),
-                    });
+                    let of_runs = runs.iter().zip(number(gathering));
+                    let first = of_runs.filter(|(run, _)| run.is_multiple_of(group));
+                    let placed =
+                        first.map(|(run, number)| (*run, numbering.place(run / group), number));
                     gathering.gather(part, placed);
                 });
-                for (gathering, groups) in gatherings.iter().zip(&mut groups).filter(|_| !counted) {
-                    for (run, x) in runs.iter().zip(number(gathering)) {
-                        groups.add(*run, iter::once(gathering.requirement.fails(x)));
+                for (gathering, groups) in gatherings.iter().zip(&mut groups) {
+                    for ((run, model), x) in runs.iter().zip(models).zip(number(gathering)) {
+                        groups.add(*model, *run, iter::once(gathering.requirement.fails(x)));
                     }
                 }
-            })?;
+            };
+            // Groups are counted once: models are told in the first pass alone.
+            if of_groups && !counted {
+                table.scan_of_models(&names, &run_column, look)?;
+            } else {
+                table.scan_beside(&names, &run_column, |numbers| look(numbers, &[]))?;
+            }
             if !all_known {
                 return Err(table.without_run().into());
             }
