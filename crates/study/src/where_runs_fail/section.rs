@@ -59,7 +59,9 @@ fn separating(found: &[WhereRunsFail], vehicles: bool) -> Option<Section> {
     });
     let reading = format!(
         "For each requirement that at least {LEAST} runs fail and at least {LEAST} runs keep: the runs are sorted by one input and cut \
-         into ten parts of the same size, the tenths of the input. If an input has nothing to do with the failures, about the \
+         into ten parts of the same size, the tenths of the input. Runs with the same value stay in one part, so that an input that is the \
+         same in many runs, as a start time that is 0 in most, has larger parts, and fewer; how many runs a part has stands in the \
+         table. If an input has nothing to do with the failures, about the \
          same share of the runs fails in each tenth, and p says how often chance alone would make the shares differ so much. \
          Inputs are shown with p below {SHOWN_BELOW}, at most {INPUTS} of them. So many inputs are tested that some would stand out by \
          chance; every p is therefore raised so far (Holm’s correction) that all inputs of a requirement together have a probability of at \
@@ -78,7 +80,7 @@ fn separating(found: &[WhereRunsFail], vehicles: bool) -> Option<Section> {
     if !pairs.is_empty() {
         let reading = format!(
             "Two inputs together can separate failing runs that neither of them separates alone: runs may fail only where both are high, \
-             say. The runs are cut into the fifths of both inputs, which makes 25 cells, and p says how often chance alone would make \
+             say. The runs are cut into the fifths of both inputs, as into the tenths of one, which makes 25 cells at most, and p says how often chance alone would make \
              the cells differ so much, if one of the two inputs added nothing to the other. It is corrected for the number of \
              pairs in the same way. It holds for inputs that are drawn independently of each other: of two that depend on each \
              other, one may seem to add to the other only because fifths are wide. At most {PAIRS} pairs are shown."
@@ -149,10 +151,11 @@ fn most(input: &Tenths) -> PageCell {
             let values = if from == to { from } else { format!("{from} to {to}") };
             let [lower, upper] =
                 [tenth.interval().lower(), tenth.interval().upper()].map(share_in_percent);
-            PageCell::from(values).line(
-                Text::default()
-                    .quiet(format!("{} ({lower} … {upper})", share_in_percent(share(tenth)))),
-            )
+            let (failures, runs, of) = (tenth.failures(), tenth.runs(), share(tenth));
+            PageCell::from(values).line(Text::default().quiet(format!(
+                "{} ({lower} … {upper}), {failures} of {runs}",
+                share_in_percent(of)
+            )))
         },
     )
 }

@@ -418,6 +418,34 @@ fn products_that_do_not_scatter_are_no_inputs() {
     assert!(told.contains("payload_i11") && !told.contains("payload_i13"), "{told}");
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Of an input that is the same in many runs, and decides which fail: the table says how many runs the part has in which most of them fail, and
+    /// the lowest and the highest part.
+    #[test]
+    fn the_runs_of_a_part_are_told((seed, tied) in (any::<u64>(), 0.0..0.95_f64), failing in 0.02..0.3_f64) {
+        let mut rows = made(seed, 600, 1, |x| x[0] > 1.0 - failing);
+        for row in &mut rows {
+            // The lowest values become one.
+            row.0[0] = row.0[0].map(|x| x.max(tied.min(1.0 - failing)));
+        }
+        let found = looked_at(&rows);
+        let page = page(std::slice::from_ref(&found));
+        for tenths in found.requirements.iter().flat_map(Failures::shown_inputs) {
+            let parts = tenths.shares.tenths();
+            prop_assert_eq!(parts.iter().map(gyradius_statistics::Tenth::runs).sum::<u64>(), 600);
+            for part in [&parts[0], &parts[parts.len() - 1]] {
+                prop_assert!(page.contains(&format!("{} of {}", part.failures(), part.runs())), "{}", page);
+            }
+            let share = |part: &&gyradius_statistics::Tenth| part.failures() as f64 / part.runs() as f64;
+            let most = parts.iter().reduce(|a, b| if share(&b) > share(&a) { b } else { a }).unwrap();
+            prop_assert!(page.contains(&format!("), {} of {}", most.failures(), most.runs())), "{}", page);
+        }
+        prop_assert!(page.contains("Runs with the same value stay in one part") || found.requirements.is_empty());
+    }
+}
+
 /// A study writes it, and the report made again from its folder is the same.
 #[test]
 fn a_study_tells_where_its_runs_fail() {
