@@ -120,6 +120,20 @@ impl Column {
         }
     }
 
+    /// Whether it is a number or a flag that comes of a run: the flag that follows from what is drawn is one, too.
+    pub(crate) fn is_outcome(self) -> bool {
+        match self {
+            Self::Number(quantity) => !quantity.is_drawn(),
+            Self::Realizable => true,
+            Self::Place(_)
+            | Self::Axes(..)
+            | Self::Drawn(_)
+            | Self::ReleaseOrder
+            | Self::Recompressed
+            | Self::ClearanceNote => false,
+        }
+    }
+
     /// What a run writes into it.
     pub(crate) fn cell(self, run: &Run<'_>) -> Cell<'static> {
         let text = |text: Option<String>| text.map_or(Cell::Null, |text| Cell::Text(text.into()));

@@ -87,14 +87,17 @@ impl Subject for Scenario {
         Declared::declarations(&Declared::of(self), self)
     }
 
-    fn is_outcome(&self, column: &Column) -> bool {
-        Quantity::ALL.iter().any(|q| !q.is_drawn() && q.column() == column.name())
+    fn outcomes(&self) -> Vec<String> {
+        let outcomes: Vec<Declared> =
+            Declared::of(self).into_iter().filter(|column| column.is_outcome()).collect();
+        let outcomes = Declared::declarations(&outcomes, self).into_iter();
+        outcomes.map(|column| column.name().to_owned()).collect()
     }
 
     fn drawn_columns(&self) -> Vec<String> {
-        let names = self.dispersions().columns();
-        let drawn = Declared::of(self).into_iter().filter(|column| column.is_drawn());
-        let drawn = drawn.map(|column| column.declaration(&names));
+        let drawn: Vec<Declared> =
+            Declared::of(self).into_iter().filter(|column| column.is_drawn()).collect();
+        let drawn = Declared::declarations(&drawn, self).into_iter();
         let numbers = drawn.filter(|column| column.kind() == Kind::Number);
         numbers.map(|column| column.name().to_owned()).collect()
     }
@@ -147,6 +150,30 @@ mod tests {
     use gyradius_campaign::run;
 
     use super::*;
+
+    /// A column of numbers or flags is drawn, or comes of a run; the flag that follows from what is drawn is both.
+    #[test]
+    fn numbers_are_drawn_or_outcomes() {
+        for text in [
+            include_str!("../tests/data/dispersed.toml").to_owned(),
+            Scenario::peck_2003().unwrap().to_toml(),
+        ] {
+            let scenario = Scenario::from_toml(&text).unwrap();
+            let (outcomes, drawn) = (scenario.outcomes(), scenario.drawn_columns());
+            for column in scenario.run_columns() {
+                let is = |names: &[String]| names.iter().any(|name| name == column.name());
+                let expected = match column.kind() {
+                    Kind::Number => !is(&drawn),
+                    Kind::Flag => true,
+                    // Vehicle and flight are no outcome, and neither is a text.
+                    Kind::Integer | Kind::Text => false,
+                };
+                assert_eq!(is(&outcomes), expected, "{}", column.name());
+            }
+            assert!(outcomes.iter().any(|name| name == "realizable"));
+            assert!(outcomes.iter().any(|name| name == "spring_1_release_s"));
+        }
+    }
 
     /// Of every column alone, of some together and of none: what all columns have, and the same failures.
     #[test]

@@ -66,8 +66,8 @@ pub(crate) trait Subject: Framed + Sync {
     ) -> Result<Self::Simulation<'a>, ScenarioError>;
     /// The columns of the run tables after model, run and status, as far as they are known before the first run.
     fn run_columns(&self) -> Vec<Column>;
-    /// Whether a column is a number that comes of a run, and is not drawn for it.
-    fn is_outcome(&self, column: &Column) -> bool;
+    /// The columns of numbers and flags that come of a run, and are not drawn for it.
+    fn outcomes(&self) -> Vec<String>;
     /// The columns of numbers that are drawn for a run.
     fn drawn_columns(&self) -> Vec<String>;
     /// The columns of the entries of the inertia of each body, which are held against each other.

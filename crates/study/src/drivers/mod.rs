@@ -1,6 +1,8 @@
 //! What drives the outcome: Sobol' indices of the groups of inputs that are drawn independently of each other.
 
 mod section;
+#[cfg(test)]
+mod tests;
 
 use gyradius_campaign::{
     Blocks, Column, Doing, Folder, Identity, Output, Plan, Progress, Simulation, run_missing,
@@ -52,7 +54,8 @@ impl<C: Subject> Finding<'_, '_, C> {
     ) -> Result<(Vec<Drivers>, Option<Blocks>), StudyError> {
         let Some(base) = self.scenario.drivers() else { return Ok((Vec::new(), None)) };
         let requirements = self.scenario.requirements();
-        let identity = sha256(serde_json::to_string(&(self.identity, requirements))?);
+        let outcomes = self.scenario.outcomes();
+        let identity = sha256(serde_json::to_string(&(self.identity, requirements, &outcomes))?);
         let names: Vec<&str> = self.scenario.model_names().collect();
         let again = self.options.retry_failed;
         let known = |head: &Head| {
@@ -92,8 +95,14 @@ impl<C: Subject> Finding<'_, '_, C> {
             let columns = simulation[0].1.columns();
             let asked = requirements_of(self.scenario, model);
             let failing = asked.iter().map(|r| Output::Fails(Box::new(r.clone())));
-            let outcomes: Vec<&Column> =
-                columns.iter().filter(|c| self.scenario.is_outcome(c)).collect();
+            // What a requirement is about may be drawn.
+            let about: Vec<&String> =
+                asked.iter().flat_map(|required| required.quantity().columns()).collect();
+            let is_asked = |column: &&Column| {
+                let name = column.name();
+                outcomes.iter().chain(about.iter().copied()).any(|other| other == name)
+            };
+            let outcomes: Vec<&Column> = columns.iter().filter(is_asked).collect();
             let numbers = outcomes.iter().map(|column| Output::Column(column.name().to_owned()));
             let outputs: Vec<Output> = failing.chain(numbers).collect();
             let runs = &runs[0];
@@ -102,7 +111,8 @@ impl<C: Subject> Finding<'_, '_, C> {
                 self.threads.install(|| designs.indices(base, runs, &outputs, confidence))?;
             let names = asked.iter().map(|r| (r.name().to_owned(), None));
             let names = names.chain(outcomes.iter().map(|column| {
-                (column.name().to_owned(), Some(column.unit().unwrap_or_default().to_owned()))
+                // A flag has no unit.
+                (column.name().to_owned(), Some(column.unit().unwrap_or("1").to_owned()))
             }));
             let (mut driven, mut left_out) = (Vec::new(), Vec::new());
             for ((output, unit), indices) in names.zip(indices) {

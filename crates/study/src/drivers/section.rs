@@ -18,6 +18,8 @@ const DRAWN: usize = 6;
 const TOLD: usize = 3;
 /// Outputs that are named of those that are nearly always the same, and of those that are left out.
 const NAMED: usize = 8;
+/// The share of base runs that an index may leave out before that is told.
+const LEFT_OUT: f64 = 0.01;
 const FIGURE: &str = "drivers";
 
 /// The figures that there may be, if drivers are asked for, by the names of the models.
@@ -55,6 +57,7 @@ pub(crate) fn section(head: &Head, main: &[String]) -> Option<Section> {
                 ": {failed} of the {runs} runs failed. A number of a run is missing then, and the group leaves the base run out."
             )));
         }
+        section = without_numbers(drivers).into_iter().fold(section, Section::paragraph);
         section = section.warnings(of_few(drivers));
         let shown: Vec<DrivenOutput> =
             shown(head, drivers, main).map(|driven| driven.drawn(drivers)).collect();
@@ -88,6 +91,25 @@ fn of_few(drivers: &Drivers) -> Option<Text> {
         " in {named}: few runs lie far from the others, or bring out what two groups do together. In brackets is by how many of the {all} runs with a single draw of everything the variance is known. The indices may lie far beyond 0 and 1, and their intervals miss the truth far more often than they say. Take more base runs.",
     ));
     (!few.is_empty()).then_some(text)
+}
+
+/// Of which outputs of a model indices leave out base runs, whether these failed or not.
+fn without_numbers(drivers: &Drivers) -> Option<Text> {
+    let share = |driven: &Driven| {
+        let left_out = driven.indices.groups().iter().map(SobolIndex::left_out);
+        left_out.max().unwrap_or(0) as f64 / driven.indices.runs() as f64
+    };
+    let shares = drivers.outputs.iter().map(|driven| (share(driven), driven));
+    let mut named: Vec<(f64, &Driven)> = shares.filter(|(share, _)| *share > LEFT_OUT).collect();
+    named.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let names = named.iter().map(|(share, d)| format!("{} ({:.0} %)", d.label(), 100.0 * share));
+    let (model, most) = (&drivers.model, 100.0 * LEFT_OUT);
+    let text = Text::default().strong(model).plain(format!(
+        ": more than {most} % of the base runs are left out of an index of these outputs, because one of the runs that it is made of has no number of the \
+         output. The indices are those of the other base runs. In brackets is the share that is left out of the index of a group, at most: {}.",
+        first_names(names, NAMED)
+    ));
+    (!named.is_empty()).then_some(text)
 }
 
 /// What the figure of a model shows: the requirements and what they are about, or the main outcomes.

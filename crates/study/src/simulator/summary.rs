@@ -229,8 +229,8 @@ impl Subject for SimulatorScenario {
         self.columns().collect()
     }
 
-    fn is_outcome(&self, column: &Column) -> bool {
-        self.outputs().iter().any(|output| output.name() == column.name())
+    fn outcomes(&self) -> Vec<String> {
+        self.outputs().iter().map(|output| output.name().to_owned()).collect()
     }
 
     fn drawn_columns(&self) -> Vec<String> {
@@ -242,7 +242,7 @@ impl Subject for SimulatorScenario {
     }
 
     fn main_outcomes(&self) -> Vec<String> {
-        self.outputs().iter().map(|column| column.name().to_owned()).collect()
+        self.outcomes()
     }
 
     fn unit(&self, column: &str) -> Option<String> {
