@@ -275,10 +275,13 @@ impl NamedModel for BasiliskDispersion {
             angle = 0.0;
         }
         let none = Self::NO_BOUNDS;
-        let rounding = 64.0 * f64::EPSILON * mean.matrix().amax().powi(2);
+        let square = mean.matrix().amax().powi(2);
         for _ in 0..STEPS {
             let law = Self::new(mean, diagonal.sqrt(), none, angle)?;
             let found = sums(law.entry_moments().covariance());
+            // What arithmetic leaves: turns of any size have weights of the square of the angle.
+            let of_turns = (f64::EPSILON + angle * angle) * square;
+            let rounding = 64.0 * f64::EPSILON * (of_turns + of_moments);
             let close = |a: f64, b: f64| (a - b).abs() <= 1e-6 * b + rounding;
             if close(found.0, of_moments) && close(found.1, products) {
                 return Ok((law, WHAT));

@@ -70,6 +70,16 @@ impl EntryMoments {
         Ok(Self { mean, covariance: *Covariance::new(covariance, 1e304)?.matrix() })
     }
 
+    /// The variance of an entry that arithmetic may leave where the entry does not vary: of the rounding of means, and of a covariance that is turned to
+    /// other axes, where a part of the largest variance is left of the sums.
+    pub(crate) fn rounding(&self) -> f64 {
+        const OF_MEAN: f64 = 64.0 * f64::EPSILON;
+        const OF_VARIANCE: f64 = 512.0 * f64::EPSILON;
+        let size = self.mean.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let most = self.covariance.diagonal().max();
+        (OF_MEAN * size).powi(2) + OF_VARIANCE * most
+    }
+
     pub(crate) fn unchecked(mean: [f64; 6], covariance: SMatrix<f64, 6, 6>) -> Self {
         Self { mean, covariance }
     }

@@ -5,9 +5,6 @@ use nalgebra::SMatrix;
 
 use crate::{DispersionModel, EntryMoments, ModelKind};
 
-/// Deviations below this share of the largest entry are rounding, and none.
-const ROUNDING: f64 = 1e-9;
-
 /// Why no model of a kind has given moments.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{kind}: {problem}")]
@@ -80,9 +77,8 @@ impl DispersionModel {
 
 /// The covariance with what is rounding set to zero.
 fn without_rounding(moments: &EntryMoments) -> SMatrix<f64, 6, 6> {
-    let size = moments.mean().iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-    let c = moments.covariance();
-    let varies = |e: usize| c[(e, e)] > (ROUNDING * size).powi(2);
+    let (c, rounding) = (moments.covariance(), moments.rounding());
+    let varies = |e: usize| c[(e, e)] > rounding;
     SMatrix::from_fn(|e, f| if varies(e) && varies(f) { c[(e, f)] } else { 0.0 })
 }
 
@@ -91,10 +87,11 @@ mod tests {
     use super::*;
     use crate::entry_moments::tests::check_entries;
     use crate::second_moment_matrix::inertia_map;
-    use crate::{KnownMoments, PrincipalDispersion, ScalarRoots};
-    use gyradius_attitude::RadiallyConstrainedGaussian;
+    use crate::{AxesLaw, FixedAttitude, KnownMoments, PrincipalDispersion, RootLaw, ScalarRoots};
+    use gyradius_attitude::{RadiallyConstrainedGaussian, UniformAttitude};
     use gyradius_inertia::Inertia;
-    use nalgebra::Matrix4;
+    use nalgebra::{Matrix3, Matrix4};
+    use proptest::prelude::*;
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
     use rand_distr::Distribution;
 
@@ -191,6 +188,87 @@ mod tests {
             for (x, y) in draw.entries().iter().zip(fixed.mean()) {
                 assert!((x - y).abs() < 1e-5, "{kind}: {x} {y}");
             }
+        }
+    }
+
+    /// Bodies about any axes: with moments that are equal, alike or not.
+    fn bodies() -> impl Strategy<Value = Inertia> {
+        let alike =
+            prop_oneof![Just(0.0), (-12.0..-1.0).prop_map(|x: f64| libm::exp10(x)), 0.05..0.9_f64];
+        let size = (-2.0..3.0).prop_map(|x: f64| libm::exp10(x));
+        (size, alike.clone(), alike, any::<bool>(), any::<u64>()).prop_map(
+            |(size, one, two, turned, seed)| {
+                let moments = [1.0, 1.0 - 0.5 * one, 1.0 - 0.4 * two].map(|x| x * size);
+                let axes = if turned {
+                    UniformAttitude
+                        .sample(&mut ChaCha8Rng::seed_from_u64(seed))
+                        .to_rotation_matrix()
+                        .into_inner()
+                } else {
+                    Matrix3::identity()
+                };
+                let matrix = axes * Matrix3::from_diagonal(&moments.into()) * axes.transpose();
+                Inertia::new((matrix + matrix.transpose()) * 0.5).unwrap()
+            },
+        )
+    }
+
+    fn roots_of(body: &Inertia, level: f64) -> ScalarRoots {
+        let roots = body.second_moments().roots();
+        ScalarRoots::normal(roots, roots.values().map(|k| (0.5 * level * k).powi(2))).unwrap()
+    }
+
+    proptest! {
+        /// Deviations are those that are asked for, however small some of them are beside the others: products of bodies whose moments are alike
+        /// hardly vary. A kind that cannot have them says so.
+        #[test]
+        fn small_deviations_are_no_rounding(body in bodies(), level in (-5.0..-1.0).prop_map(|x: f64| libm::exp10(x))) {
+            let axes = RadiallyConstrainedGaussian::from_rotation_covariance(
+                body.principal_axes().attitude(),
+                Matrix3::from_diagonal_element(level * level),
+                0.01,
+            );
+            let target = PrincipalDispersion::new(roots_of(&body, level), axes.unwrap()).entry_moments();
+            let moments = body.principal_axes().moments();
+            let [least, most] = [f64::min, f64::max].map(|of| moments.into_iter().fold(moments[0], of));
+            for kind in ModelKind::ALL {
+                let found = DispersionModel::matched(kind, &target);
+                if kind == ModelKind::Principal {
+                    // Axes that turn move no product of equal moments.
+                    prop_assert!(found.is_err() || most - least > 1e-9 * most, "{:?}", moments);
+                    continue;
+                }
+                let (what, model) = found.map(|found| (found.what(), found.into_model())).unwrap();
+                let has_sums = kind == ModelKind::Basilisk;
+                if !has_sums && (kind == ModelKind::Wishart || what.contains("first order")) {
+                    continue;
+                }
+                let Some(own) = model.entry_moments() else { continue };
+                let squares = |m: &EntryMoments| -> Vec<f64> {
+                    let squares = m.deviations().map(|x| x * x);
+                    if has_sums { squares.chunks(3).map(|part| part.iter().sum()).collect() } else { squares.to_vec() }
+                };
+                for (own, asked) in squares(&own).into_iter().zip(squares(&target)) {
+                    prop_assert!((own / asked - 1.0).abs() < 1e-4, "{} {}: {:e} {:e}", kind, level, own, asked);
+                }
+            }
+        }
+
+        /// About axes that are fixed, products in these axes are rounding, which no kind is asked for.
+        #[test]
+        fn what_does_not_vary_is_rounding(body in bodies(), level in (-9.0..-1.0).prop_map(|x: f64| libm::exp10(x))) {
+            let axes = AxesLaw::Fixed(FixedAttitude::new(body.principal_axes().attitude()));
+            let target = PrincipalDispersion::new(RootLaw::from(roots_of(&body, level)), axes).entry_moments();
+            let moments = body.principal_axes().moments();
+            let most = moments.into_iter().fold(0.0, f64::max);
+            // Of moments that are alike nobody knows the axes.
+            if (0..3).any(|i| (moments[i] - moments[(i + 1) % 3]).abs() <= 1e-4 * most) {
+                return Ok(());
+            }
+            let own = matched(ModelKind::Principal, &target).entry_moments().unwrap();
+            let gap = own.covariance() - target.covariance();
+            // What is fixed turns by 3e-7 rad.
+            prop_assert!(gap.amax() < 1e-3 * target.covariance().amax() + (1e-6 * most).powi(2), "{:e} {:?}", gap.amax(), moments);
         }
     }
 

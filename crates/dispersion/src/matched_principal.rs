@@ -12,8 +12,8 @@ use crate::{
     PrincipalDispersion, RootLaw,
 };
 
-/// Deviations below this share of the largest entry are rounding, and none.
-const ROUNDING: f64 = 1e-9;
+/// Moments that differ by no more than this share of the largest are the same, about whose axes no turn is seen.
+const ALIKE: f64 = 1e-9;
 /// The radial variance of axes whose second lobe is empty, whatever the turns.
 const RADIAL: f64 = 0.01;
 /// Largest standard deviation of a turn, rad: beyond, turns say nothing of products any more.
@@ -39,17 +39,14 @@ impl NamedModel for Principal {
         const WHAT: &str =
             "mean, covariance of the principal moments and of the axes, to first order";
         let body = Inertia::try_from(mean)?;
-        Ok((principal(&body, moments.mean(), moments.covariance())?, WHAT))
+        Ok((principal(&body, moments)?, WHAT))
     }
 }
 
 /// Gaussian roots with full covariance about a radially constrained Gaussian of the axes.
-fn principal(
-    body: &Inertia,
-    mean: [f64; 6],
-    covariance: &SMatrix<f64, 6, 6>,
-) -> Result<Principal, NoMatch> {
+fn principal(body: &Inertia, moments: &EntryMoments) -> Result<Principal, NoMatch> {
     const STEPS: usize = 12;
+    let (mean, covariance, rounding) = (moments.mean(), moments.covariance(), moments.rounding());
     let axes = body.principal_axes();
     let to_principal = turn(&axes);
     let target_mean = to_principal * SVector::<f64, 6>::from(mean);
@@ -60,7 +57,7 @@ fn principal(
     let mut asked_products: Matrix3<f64> = target.fixed_view::<3, 3>(3, 3).into();
     let mut best: Option<(f64, Principal)> = None;
     for _ in 0..STEPS {
-        let law = first_order(&axes, asked_mean, &asked_moments, &asked_products);
+        let law = first_order(&axes, asked_mean, &asked_moments, (&asked_products, rounding));
         let law = match (law, &best) {
             (Ok(law), _) => law,
             (Err(_), Some(_)) => break,
@@ -89,12 +86,12 @@ fn principal(
     best.map(|(_, law)| law).ok_or_else(|| "no law was found".into())
 }
 
-/// Roots with the moments' covariance; axes that turn as the products ask for.
+/// Roots with the moments' covariance; axes that turn as the products ask for, of which this variance is rounding.
 fn first_order(
     axes: &PrincipalAxes,
     [i1, i2, i3]: [f64; 3],
     moments: &Matrix3<f64>,
-    products: &Matrix3<f64>,
+    (products, rounding): (&Matrix3<f64>, f64),
 ) -> Result<Principal, NoMatch> {
     // K = ½ (ΣI)·1 − I.
     let map = Matrix3::new(-0.5, 0.5, 0.5, 0.5, -0.5, 0.5, 0.5, 0.5, -0.5);
@@ -132,12 +129,12 @@ fn first_order(
     let mut turns = Matrix3::zeros();
     for a in 0..3 {
         for b in 0..3 {
-            if differences[a].abs() > 1e-9 * size && differences[b].abs() > 1e-9 * size {
+            if differences[a].abs() > ALIKE * size && differences[b].abs() > ALIKE * size {
                 turns[(2 - a, 2 - b)] = products[(a, b)] / (differences[a] * differences[b]);
             }
         }
         let deviation = turns[(2 - a, 2 - a)].max(0.0).sqrt();
-        let varies = products[(a, a)] > (ROUNDING * size).powi(2);
+        let varies = products[(a, a)] > rounding;
         if deviation > MAX_TURN || (varies && deviation == 0.0) {
             return Err(format!(
                 "{} varies by {:.3e} kg·m² in principal axes: no small turn of the axes does that, for \
