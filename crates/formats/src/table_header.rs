@@ -90,7 +90,11 @@ impl Header {
         self.unread.iter().find_map(|(at, what)| {
             let (heading, cell) = (self.row.get(*at)?, row.get(*at)?);
             let [heading, cell] = [heading, cell].map(|field| field.of(text.as_str()).trim());
-            what.problem(heading, cell)
+            // A unit may also be a thing that was made: unit FM-1 of a series.
+            let is_thing = *what == Unread::Unit
+                && ["unit", "units"].contains(&squeezed(heading).as_str())
+                && !Unit::is_named(cell);
+            if is_thing { None } else { what.problem(heading, cell) }
         })
     }
 }

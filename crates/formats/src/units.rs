@@ -27,6 +27,10 @@ pub(crate) enum Dimension {
     Inertia,
 }
 
+impl Dimension {
+    const ALL: [Self; 4] = [Self::Mass, Self::Length, Self::FirstMoment, Self::Inertia];
+}
+
 /// A unit as it is written, nothing where none is stated, and how much it is in SI.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Unit {
@@ -38,6 +42,14 @@ impl Unit {
     /// That of SI, which nothing states.
     pub(crate) fn none() -> Self {
         Self { text: String::new(), si: 1.0 }
+    }
+
+    /// Whether a text, or a word of it, is a unit of any dimension.
+    pub(crate) fn is_named(text: &str) -> bool {
+        let words = text.split([',', ';', '/', ' ']).chain([text]);
+        words.filter(|word| !word.trim().is_empty()).any(|word| {
+            Dimension::ALL.into_iter().any(|dimension| Self::of(word, dimension).is_ok())
+        })
     }
 
     /// The unit in a text that holds nothing else.

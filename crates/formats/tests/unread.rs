@@ -111,3 +111,33 @@ fn other_columns_of_bodies_may_be_anything() {
         assert_eq!(file.bodies()[0].inertia().unwrap()[(1, 1)], 5.0, "{heading}");
     }
 }
+
+/// A table of a series has the units that were made in its rows.
+#[test]
+fn units_of_a_series_are_no_units_of_inertia() {
+    const HEAD: &str = "ixx,iyy,izz,ixy,ixz,iyz,mass";
+    for heading in ["unit", "Unit", "units", "UNIT"] {
+        for (cell, is_thing) in [
+            ("FM-1", true),
+            ("EM", true),
+            ("SN 007", true),
+            ("007", true),
+            ("vehicle B", true),
+            ("A17", true),
+            ("lb in2", false),
+            ("lbm", false),
+            ("lb, in", false),
+            ("kg mm²", false),
+            ("g", false),
+            ("mm", false),
+            ("slug-ft^2", false),
+        ] {
+            let text = format!("{HEAD},{heading}\n3,4,5,0,0,0,10,\"{cell}\"\n");
+            let file =
+                InertiaFile::parse(Path::new("t.csv"), text.into_bytes(), Products::default())
+                    .unwrap();
+            let is_read = file.bodies().iter().all(|body| body.inertia().is_ok());
+            assert_eq!(is_read, is_thing, "{heading} {cell}");
+        }
+    }
+}
