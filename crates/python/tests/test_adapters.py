@@ -102,6 +102,30 @@ def mujoco_model(with_mujoco: types.ModuleType):
     return with_mujoco.compile_movable(mujoco.MjSpec.from_string(MJCF))
 
 
+MECHANISM = """<mujoco><option gravity="0 0 -9.81"/><worldbody>
+<camera name="eye" mode="trackcom" pos="1 0 2"/><light name="lamp" mode="trackcom" pos="0 1 3"/>
+<body name="target" mocap="true" pos="0 0 2"/>
+<body name="arm" pos="0 0 1"><joint name="shoulder" type="ball"/><inertial pos="0 0 0.1" mass="1" diaginertia="1 2 2.5"/>
+  <geom type="box" size=".05 .1 .15"/><camera name="held" mode="trackcom" pos="0 0 1"/>
+  <light name="torch" mode="targetbodycom" target="plate" pos="0 1 0"/><site name="end" pos=".1 .2 .3"/>
+  <body name="tool" pos="0 0 .5"><joint name="elbow" type="hinge" axis="0 1 0" range="-1 1" limited="true"
+      frictionloss=".1"/><inertial pos="0 0 0.2" mass="1" diaginertia="1 2 2.5"/>
+    <geom type="sphere" size=".1"/><camera name="there" mode="targetbodycom" target="plate"/>
+    <site name="tip" pos="0 .1 .2"/></body></body>
+<body name="plate" pos="2 0 1"><freejoint/><inertial pos="0.3 0.2 0.1" mass="1" diaginertia="2 1 2.5"/>
+  <geom type="box" size=".1 .2 .3"/><camera name="carried" mode="track"/></body>
+<body name="rod" pos="-2 0 1"><joint name="slide" type="slide" axis="1 0 0"/><joint type="hinge" axis="0 1 0"/>
+  <inertial pos="0 0 0.1" mass="1" diaginertia="1 2 2.5"/><site name="foot" pos="0 0 -.3"/></body>
+</worldbody>
+<tendon><spatial name="rope" limited="true" range="0 9" stiffness="3"><site site="end"/><site site="tip"/>
+  <site site="foot"/></spatial></tendon>
+<equality><weld body1="target" body2="arm"/><joint joint1="elbow" joint2="slide"/></equality>
+<actuator><motor name="drive" joint="elbow"/><general name="slow" joint="slide" dyntype="filter" dynprm="0.2"/>
+  <muscle name="pull" tendon="rope" lengthrange="0.5 5"/></actuator>
+<sensor><subtreecom body="arm"/><framepos objtype="camera" objname="held"/></sensor></mujoco>"""
+"""A mechanism of every kind of part that MuJoCo derives a constant for."""
+
+
 def mass_matrix(mujoco, model, data) -> np.ndarray:
     """The mass matrix, by MuJoCo's own multiplication, (nv, nv)."""
     mujoco.mj_forward(model, data)
@@ -158,6 +182,48 @@ def test_mujoco_says_what_it_was_told():
         close(read.inertia, bodies.inertia[2])
 
 
+def put_state(mujoco, model, data, rng: np.random.Generator) -> np.ndarray:
+    """Put a random state into data, and say what MuJoCo takes for its state."""
+    every = mujoco.mjtState.mjSTATE_INTEGRATION
+    state = np.empty(mujoco.mj_stateSize(model, every))
+    for _ in range(3):
+        data.ctrl[:] = rng.uniform(0, 1, model.nu)
+        mujoco.mj_step(model, data)
+    data.qpos[:] += rng.uniform(-1, 1, model.nq)
+    mujoco.mj_normalizeQuat(model, data.qpos)
+    data.mocap_quat[:] = np.eye(4)[0]
+    for name in ("qvel", "act", "ctrl", "qfrc_applied", "xfrc_applied", "qacc_warmstart", "mocap_pos"):
+        values = getattr(data, name)
+        values[:] = rng.uniform(0, 1, values.shape)
+    data.eq_active[:] = rng.integers(0, 2, model.neq)
+    data.time = rng.uniform(1, 9)
+    mujoco.mj_getState(model, data, state, every)
+    return state
+
+
+def test_mujoco_keeps_its_state_and_computes_anew_what_follows_from_it():
+    mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed")
+    import with_mujoco
+
+    model = mujoco.MjModel.from_xml_string(MECHANISM)
+    data = mujoco.MjData(model)
+    every = mujoco.mjtState.mjSTATE_INTEGRATION
+    drawn = draws(BODIES)
+    rng = np.random.default_rng(6)
+    for index in range(4 * DRAWS):
+        before = put_state(mujoco, model, data, rng)
+        with_mujoco.apply(model, data, drawn, index % DRAWS)
+        after = np.empty_like(before)
+        mujoco.mj_getState(model, data, after, every)
+        np.testing.assert_array_equal(after, before)
+        # What new data compute of that state in that model.
+        other = mujoco.MjData(model)
+        mujoco.mj_setState(model, other, before, every)
+        mujoco.mj_forward(model, other)
+        for name in ("xipos", "subtree_com", "cam_xpos", "light_xpos", "qfrc_bias", "ten_length", "sensordata", "qacc"):
+            np.testing.assert_array_equal(getattr(data, name), getattr(other, name), err_msg=name)
+
+
 def test_mujoco_refuses_a_body_that_is_compiled_as_simple():
     mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed")
     import with_mujoco
@@ -196,6 +262,28 @@ def test_mjx_has_the_drawn_bodies_in_each_environment():
     close(host.body_mass, nominal, 0.0)
 
 
+def test_mjx_has_in_each_environment_what_it_makes_of_a_model_with_the_draw():
+    pytest.importorskip("mujoco.mjx", reason="MJX is not installed", exc_type=ImportError)
+    import jax
+    import with_mjx
+    import with_mujoco
+    from mujoco import mjx
+
+    mujoco = with_mujoco.mujoco
+    host = mujoco.MjModel.from_xml_string(MECHANISM)
+    drawn = draws(BODIES)
+    batch, axes = with_mjx.randomize(host, mjx.put_model(host), drawn, DRAWS)
+    for index in range(DRAWS):
+        scratch = mujoco.MjModel.from_xml_string(MECHANISM)
+        with_mujoco.write(scratch, mujoco.MjData(scratch), drawn, index)
+        found = jax.tree.map(
+            lambda axis, leaf: leaf if axis is None else leaf[index], axes, batch, is_leaf=lambda axis: axis is None
+        )
+        expected = jax.tree_util.tree_leaves_with_path(mjx.put_model(scratch))
+        for (path, there), (_, leaf) in zip(expected, jax.tree_util.tree_leaves_with_path(found), strict=True):
+            np.testing.assert_array_equal(leaf, there, err_msg=jax.tree_util.keystr(path))
+
+
 def test_robosuite_has_the_drawn_bodies():
     suite = pytest.importorskip("robosuite", reason="robosuite is not installed")
     import with_robosuite
@@ -209,10 +297,16 @@ def test_robosuite_has_the_drawn_bodies():
     names = [f"robot0_link{i}" for i in range(1, 8)]
     bodies = {name: with_robosuite.nominal(env, name) for name in names}
     drawn = draws(bodies)
-    with_robosuite.apply(env, drawn, 3)
     import mujoco
 
     model, data = env.sim.model._model, env.sim.data._data
+    every = mujoco.mjtState.mjSTATE_INTEGRATION
+    before = np.empty(mujoco.mj_stateSize(model, every))
+    after = np.empty_like(before)
+    mujoco.mj_getState(model, data, before, every)
+    with_robosuite.apply(env, drawn, 3)
+    mujoco.mj_getState(model, data, after, every)
+    np.testing.assert_array_equal(after, before)
     matrix = mass_matrix(mujoco, model, data)
     hinges = [model.body(name).dofadr[0] for name in names]
     # The mass matrix of the arm as the sum over bodies of Jᵀ M J, in axes of the world.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable
+from operator import attrgetter
 
 import gyradius
 import jax
@@ -25,6 +26,9 @@ FIELDS = (
     "dof_M0",
     "tendon_invweight0",
     "actuator_acc0",
+    "cam_poscom0",
+    "light_poscom0",
+    "stat.meaninertia",
 )
 
 
@@ -32,12 +36,12 @@ def randomize(
     host: mujoco.MjModel, model: mjx.Model, draws: dict[str, gyradius.MassProperties], n: int
 ) -> tuple[mjx.Model, mjx.Model]:
     """The model with n draws of the bodies along the first axis, and the axes for `jax.vmap`: 0 for what is drawn."""
-    scratch, fields = copy.copy(host), {name: [] for name in FIELDS if hasattr(model, name)}
+    scratch, fields = copy.copy(host), {name: [] for name in FIELDS if hasattr(model, name.split(".")[0])}
     data = mujoco.MjData(scratch)
     for index in range(n):
-        with_mujoco.apply(scratch, data, draws, index)
+        with_mujoco.write(scratch, data, draws, index)
         for name, rows in fields.items():
-            rows.append(getattr(scratch, name).copy())
+            rows.append(np.array(attrgetter(name)(scratch)))
     axes = jax.tree.map(lambda _: None, model).tree_replace(dict.fromkeys(fields, 0))
     return model.tree_replace({name: jnp.asarray(np.stack(rows)) for name, rows in fields.items()}), axes
 

@@ -27,8 +27,11 @@ def nominal(model: mujoco.MjModel, name: str) -> gyradius.MassProperties:
     return gyradius.MassProperties(float(body.mass[0]), body.ipos, axes @ np.diag(body.inertia) @ axes.T)
 
 
-def apply(model: mujoco.MjModel, data: mujoco.MjData, draws: dict[str, gyradius.MassProperties], index: int) -> None:
-    """Put draw `index` of the bodies, by their names, into a model, and update what MuJoCo derives from it.
+def write(model: mujoco.MjModel, scratch: mujoco.MjData, draws: dict[str, gyradius.MassProperties], index: int) -> None:
+    """Put draw `index` of the bodies, by their names, into a model, and update the constants that MuJoCo derives from it.
+
+    MuJoCo computes these constants in the model's reference configuration, and leaves `scratch` in it: give data whose
+    state nobody needs.
 
     Raises
     ------
@@ -47,4 +50,13 @@ def apply(model: mujoco.MjModel, data: mujoco.MjData, draws: dict[str, gyradius.
         model.body_sameframe[body] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE
         model.geom_sameframe[model.geom_bodyid == body] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE
         model.site_sameframe[model.site_bodyid == body] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE
-    mujoco.mj_setConst(model, data)
+    mujoco.mj_setConst(model, scratch)
+
+
+def apply(model: mujoco.MjModel, data: mujoco.MjData, draws: dict[str, gyradius.MassProperties], index: int) -> None:
+    """Put draw `index` of the bodies into a model, as `write` does, and compute anew what `data` holds of its own state.
+
+    The state itself stays: positions, velocities, activations, controls, forces, mocap bodies and time.
+    """
+    write(model, mujoco.MjData(model), draws, index)
+    mujoco.mj_forward(model, data)

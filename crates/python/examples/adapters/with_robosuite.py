@@ -12,6 +12,5 @@ def nominal(env, name: str) -> gyradius.MassProperties:
 
 
 def apply(env, draws: dict[str, gyradius.MassProperties], index: int) -> None:
-    """Put draw `index` of the bodies, by their names, into an environment; again after each hard reset."""
+    """Put draw `index` of the bodies, by their names, into an environment, again after each hard reset. Its state stays."""
     with_mujoco.apply(env.sim.model._model, env.sim.data._data, draws, index)
-    env.sim.forward()
