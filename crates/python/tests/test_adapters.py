@@ -336,14 +336,14 @@ class View:
     """As much of PhysX's view of articulations as the adapter uses: getters give copies, setters take the rows of
     some environments."""
 
-    def __init__(self, environments: int, bodies: int, drops_products: bool = False):
+    def __init__(self, environments: int, bodies: int, drops=lambda held: None):
         shapes = {
             "masses": (environments, bodies),
             "coms": (environments, bodies, 7),
             "inertias": (environments, bodies, 9),
         }
         self.held = {name: np.full(shape, 0.125, np.float32).view(Tensor) for name, shape in shapes.items()}
-        self.drops_products = drops_products
+        self.drops = drops
         for name in shapes:
             setattr(self, f"get_{name}", lambda name=name: self.held[name].copy())
             setattr(self, f"set_{name}", lambda values, ids, name=name: self.put(name, values, ids))
@@ -351,8 +351,7 @@ class View:
     def put(self, name: str, values: Tensor, env_ids: Tensor) -> None:
         """Take the rows of some environments."""
         self.held[name][env_ids] = values[env_ids]
-        if name == "inertias" and self.drops_products:
-            self.held[name][..., [1, 2, 3, 5, 6, 7]] = 0.0
+        self.drops(self.held)
 
 
 def asset(view: View) -> types.SimpleNamespace:
@@ -379,11 +378,29 @@ def test_isaac_lab_is_given_the_drawn_bodies_in_its_tensors():
         assert np.all(values[untouched] == 0.125)
 
 
-def test_isaac_lab_that_drops_products_is_found_out():
+@pytest.mark.parametrize("body", [1, 3])
+@pytest.mark.parametrize(
+    "name, entries, what",
+    [("masses", (), "masses"), ("coms", ([0, 1, 2],), "mass centres"), ("inertias", ([1, 2, 3, 5, 6, 7],), "inertias")],
+)
+def test_isaac_lab_that_drops_anything_of_a_body_of_any_size_is_found_out(body: int, name: str, entries: tuple, what: str):
     import with_isaac_lab
 
-    with pytest.raises(RuntimeError, match="does not hold"):
-        with_isaac_lab.apply(asset(View(8, 4, True)), np.arange(3).view(Tensor), draws({"arm": ARM}))
+    for size in 10.0 ** np.arange(-4, 4):
+        # The same bodies in another length and another mass, beside one that stays as it is.
+        small = ["arm", "plate"][[1, 3].index(body)]
+        drawn = draws({"arm": ARM, "plate": PLATE})
+        one = drawn[small]
+        drawn[small] = gyradius.MassProperties(one.mass * size**3, one.centre * size, one.inertia * size**5)
+
+        def drops(held: dict[str, Tensor]) -> None:
+            """Drop entries of one body in one environment."""
+            held[name][(2, body, *entries)] = 0.0
+
+        env_ids = np.arange(3).view(Tensor)
+        with_isaac_lab.apply(asset(View(8, 4)), env_ids, drawn)
+        with pytest.raises(RuntimeError, match=f"does not hold the {what}"):
+            with_isaac_lab.apply(asset(View(8, 4, drops)), env_ids, drawn)
 
 
 def test_genesis_is_given_the_drawn_links_in_the_axes_of_their_inertia():
