@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextvars
+import decimal
 import functools
 import hashlib
 import importlib
@@ -15,6 +17,9 @@ from gyradius._arrays import Real
 
 Simulation: TypeAlias = Callable[..., Mapping[str, Real]]
 """What simulates a run: its inputs in, its outputs out."""
+
+Called: TypeAlias = Callable[[dict[str, float], dict[str, Any]], Any]
+"""A simulation, called with its inputs and with what else there is to know of the run."""
 
 Progress: TypeAlias = Union[bool, Callable[[int, int], object]]
 """Whether a bar is shown, or what is told how far a study is."""
@@ -32,7 +37,7 @@ LONGEST = 200
 """Characters that a scenario may say of its function."""
 
 
-def called_with(simulation: Simulation) -> tuple[Callable[[dict[str, float], dict[str, Any]], Any], set[str]]:
+def called_with(simulation: Simulation) -> tuple[Called, set[str]]:
     """The simulation, called with its inputs and, by keyword, with what it has parameters for; and which of these it needs."""
     try:
         parameters = list(inspect.signature(simulation).parameters.values())
@@ -68,6 +73,19 @@ def called_with(simulation: Simulation) -> tuple[Callable[[dict[str, float], dic
     if not wanted:
         return lambda inputs, about: simulation(inputs), needed
     return lambda inputs, about: simulation(inputs, **{name: about[name] for name in wanted if name in about}), needed
+
+
+def in_context(called: Called) -> Called:
+    """The same, called each time in a copy of the context that the caller has now, whatever thread calls it."""
+    context, decimals = contextvars.copy_context(), decimal.getcontext().copy()
+
+    def alone(inputs: dict[str, float], about: dict[str, Any]) -> Any:
+        # A context has the settings of decimal numbers themselves, which a run could change for the others.
+        decimal.setcontext(decimals.copy())
+        return called(inputs, about)
+
+    # No two threads may be in one context at the same time.
+    return lambda inputs, about: context.copy().run(alone, inputs, about)
 
 
 def described(simulation: Simulation) -> str:

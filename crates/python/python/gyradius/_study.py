@@ -19,7 +19,7 @@ import numpy as np
 
 from gyradius import _core
 from gyradius._arrays import Real, flag, folder_or_file, listed, text, whole
-from gyradius._simulation import ABOUT, OF_VEHICLES, SOURCE, Progress, Simulation, called_with, described, progress_of
+from gyradius._simulation import ABOUT, OF_VEHICLES, SOURCE, Progress, Simulation, called_with, described, in_context, progress_of
 
 # Threads that are in a study when the program ends, as those of daemons are.
 atexit.register(_core.end_all)
@@ -183,6 +183,8 @@ class Study:
     ) -> Replay:
         """Does one run again, alone, and holds it against its row, bit by bit.
 
+        A function is called in the context that the caller of `gyradius.study` had, as it was then.
+
         Parameters
         ----------
         run : int
@@ -343,6 +345,9 @@ def study(
     finished runs in ``out`` is done again first, and a function that does it otherwise is refused. Say
     ``{"simulation": {"function": "spin-up, version 3"}, ...}`` in the scenario to tell versions apart yourself.
 
+    Each call of the function is in a copy of the caller's context (`contextvars`): precision of decimal numbers, and `numpy.seterr` from
+    NumPy 2 on. What else belongs to a thread, as `threading.local` and ``torch.no_grad`` do, is as in a new thread.
+
     Examples
     --------
     >>> import gyradius
@@ -372,6 +377,7 @@ def study(
     if simulation is not None and not callable(simulation):
         raise ValueError(f"simulation: it must be callable, not {type(simulation).__name__}")
     called, needed = (None, set()) if simulation is None else called_with(simulation)
+    called = None if called is None else in_context(called)
     function = None if simulation is None else described(simulation)
     core, place = _scenario(scenario, function, given)
     core = core.changed(

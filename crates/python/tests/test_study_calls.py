@@ -1,0 +1,88 @@
+"""Where the function of a study is called."""
+
+from __future__ import annotations
+
+import contextvars
+import decimal
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import gyradius
+
+WORD: contextvars.ContextVar[int] = contextvars.ContextVar("WORD", default=-1)
+MODES = ("ignore", "warn", "raise", "print")
+IN_CONTEXT = int(np.__version__.split(".")[0]) >= 2
+"""Whether NumPy keeps what `seterr` says in a context variable."""
+
+
+def scenario(**more: Any) -> dict[str, Any]:
+    """A scenario with one quantity."""
+    return {"name": "calls", "runs": 30, "quantities": [{"name": "x", "unit": "m", "law": gyradius.normal(1.0, 0.1)}], **more}
+
+
+def seen() -> dict[str, float]:
+    """What the context is, in numbers."""
+    modes = [MODES.index(mode) for _, mode in sorted(np.geterr().items())]
+    told = sum(mode * 4.0**place for place, mode in enumerate(modes)) if IN_CONTEXT else 0.0
+    return {"word": float(WORD.get()), "digits": float(decimal.getcontext().prec), "modes": told}
+
+
+def look(inputs: dict[str, float], run: int) -> dict[str, float]:
+    """What the context is, which it then changes."""
+    found = seen()
+    WORD.set(1000 + run)
+    decimal.getcontext().prec = 100 + run
+    np.seterr(all=MODES[run % 2])
+    return found
+
+
+@settings(max_examples=20)
+@given(
+    word=st.integers(0, 99),
+    digits=st.integers(1, 90),
+    modes=st.tuples(*[st.sampled_from(MODES[:3])] * 4),
+    threads=st.integers(1, 3),
+    declared=st.booleans(),
+)
+def test_a_function_is_called_in_the_context_of_its_caller(
+    word: int, digits: int, modes: tuple[str, ...], threads: int, declared: bool
+) -> None:
+    outputs = {"word": "1", "digits": "1", "modes": "1"} if declared else None
+
+    def called() -> tuple[gyradius.Study, dict[str, float]]:
+        WORD.set(word)
+        decimal.getcontext().prec = digits
+        np.seterr(**dict(zip(("divide", "invalid", "over", "under"), modes)))  # type: ignore[arg-type]
+        return gyradius.study(scenario(), look, outputs=outputs, threads=threads), seen()
+
+    modes_before, digits_before = np.geterr(), decimal.getcontext().prec
+    try:
+        study, expected = contextvars.copy_context().run(called)
+    finally:
+        np.seterr(**modes_before)  # type: ignore[arg-type]
+        decimal.getcontext().prec = digits_before
+    table = study.to_numpy()["all"]
+    for name, value in expected.items():
+        assert (table[name] == value).all(), name
+    # Wherever it is asked for a run again.
+    for run in (0, 7, 29):
+        assert {name: study.replay(run).row[name] for name in expected} == expected
+    assert decimal.getcontext().prec == digits_before and np.geterr() == modes_before
+
+
+def test_what_a_function_raises_by_the_mode_of_its_caller_is_the_same_again() -> None:
+    def divide(inputs: dict[str, float]) -> dict[str, float]:
+        return {"y": float(np.minimum(1.0 / np.maximum(np.array([inputs["x"] - 1.0]), 0.0), 5.0)[0])}
+
+    if not IN_CONTEXT:
+        pytest.skip("this NumPy keeps the modes of each thread")
+    with np.errstate(all="raise"):
+        study = gyradius.study(scenario(), divide, outputs={"y": "1"})
+    table = study.to_numpy()["all"]
+    assert (table["status"] == np.where(table["x"] > 1.0, "ok", "simulator: FloatingPointError: divide by zero encountered in divide")).all()
+    for run in range(30):
+        assert study.replay(run).status == table["status"][run]
