@@ -15,6 +15,7 @@ use crate::{
     column::Column,
     folder::FolderError,
     runs_error::RunsError,
+    stack::stack_size,
     stop::is_stopped,
     table::{Table, TableError},
 };
@@ -54,7 +55,7 @@ pub trait Simulation: Sync {
     ///
     /// A thread of rayon that waits for a loop of rayon does other work meanwhile, which here is another run, on the same stack
     /// and in the middle of the first. So runs are done apart if they compute with rayon and hold a lock meanwhile, or call a function
-    /// of the user's own, which may do so.
+    /// of the user's own, which may do so. Their threads have the stack of a main thread ([`stack_size`]), for functions that work there.
     fn apart(&self) -> bool {
         false
     }
@@ -205,10 +206,10 @@ impl<S: Simulation> Asked<'_, S> {
     }
 }
 
-/// Does some work in a thread that is none of rayon's, and waits for it without doing anything else.
+/// Does some work in a thread that is none of rayon's and has the stack of a main thread, and waits for it without doing anything else.
 fn aside<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, CampaignError> {
     thread::scope(|scope| {
-        let begun = thread::Builder::new().spawn_scoped(scope, work);
+        let begun = thread::Builder::new().stack_size(stack_size()).spawn_scoped(scope, work);
         let begun = begun.map_err(|e| CampaignError::Threads { problem: e.to_string() })?;
         Ok(begun.join().unwrap_or_else(|panic| resume_unwind(panic)))
     })

@@ -1,9 +1,13 @@
-"""Where the function of a study is called."""
+"""Where the function of a study is called: in which context, on how large a stack, and what tells another function."""
 
 from __future__ import annotations
 
 import contextvars
 import decimal
+import os
+import subprocess
+import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -86,3 +90,51 @@ def test_what_a_function_raises_by_the_mode_of_its_caller_is_the_same_again() ->
     assert (table["status"] == np.where(table["x"] > 1.0, "ok", "simulator: FloatingPointError: divide by zero encountered in divide")).all()
     for run in range(30):
         assert study.replay(run).status == table["status"][run]
+
+
+RECURSION = """
+import functools, sys
+import gyradius
+
+sys.setrecursionlimit(10**6)
+
+
+def deep(n):
+    # Through C, each level of which takes some 400 bytes of stack.
+    return 0 if n == 0 else functools.reduce(lambda a, b: deep(n - 1) + 1, [0, 1])
+
+
+def outcome(function):
+    try:
+        return function()
+    except Exception as error:
+        return type(error).__name__
+
+
+depth, threads, in_main, declared = map(int, sys.argv[1:])
+x = {"name": "x", "unit": "1", "law": gyradius.normal(0.0, 1.0)}
+outputs = {"y": "1"} if declared else None
+main = outcome(lambda: deep(depth)) if in_main else depth
+try:
+    table = gyradius.study(
+        {"name": "deep", "runs": 5, "quantities": [x]}, lambda inputs: {"y": deep(depth)}, outputs=outputs, threads=threads
+    ).to_numpy()["all"]
+    found = set(table["y"]) if (table["status"] == "ok").all() else {status.split(': ')[1] for status in table["status"]}
+except ValueError as error:
+    found = {str(main) if str(main) in str(error) else str(error)}
+assert found == {main}, (found, main)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="main threads have less stack there")
+@pytest.mark.parametrize(
+    ("depth", "environment"), [(5000, {}), (10000, {}), (10000, {"RUST_MIN_STACK": "100000"}), (30000, {"RUST_MIN_STACK": "40000000"})]
+)
+@pytest.mark.parametrize(("threads", "declared"), [(1, 1), (3, 1), (1, 0)])
+def test_what_fits_the_stack_of_the_main_thread_fits_that_of_a_study(
+    depth: int, environment: dict[str, str], threads: int, declared: int, tmp_path: Path
+) -> None:
+    in_main = int(depth <= 10000)
+    words = [sys.executable, "-c", RECURSION, *map(str, (depth, threads, in_main, declared))]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, env={**os.environ, **environment})
+    assert done.returncode == 0, done

@@ -346,7 +346,8 @@ def study(
     ``{"simulation": {"function": "spin-up, version 3"}, ...}`` in the scenario to tell versions apart yourself.
 
     Each call of the function is in a copy of the caller's context (`contextvars`): precision of decimal numbers, and `numpy.seterr` from
-    NumPy 2 on. What else belongs to a thread, as `threading.local` and ``torch.no_grad`` do, is as in a new thread.
+    NumPy 2 on. What else belongs to a thread, as `threading.local` and ``torch.no_grad`` do, is as in a new thread. There are 8 MiB of stack, or
+    as much as the limit of the process or ``RUST_MIN_STACK`` says if that is more.
 
     Examples
     --------

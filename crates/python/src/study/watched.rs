@@ -1,5 +1,6 @@
 //! What takes long, in a thread of its own, while the thread that called looks for interrupts and tells of progress.
 
+use gyradius_campaign::{CampaignError, stack_size};
 use gyradius_study::StudyError;
 use pyo3::{Py, PyAny, PyErr, PyResult, Python, exceptions::PySystemExit, pyfunction};
 use std::{
@@ -117,11 +118,15 @@ impl Watched {
             thread::scope(|scope| {
                 let (ended, end) = mpsc::channel::<()>();
                 let more = &more;
-                let worker = scope.spawn(move || {
+                // The function in Python, which may tell its outputs first, is called in it too.
+                let worker = thread::Builder::new().stack_size(stack_size());
+                let worker = worker.spawn_scoped(scope, move || {
                     // It is dropped when the work has ended, or panics.
                     let _ended = ended;
                     work(more)
                 });
+                let worker =
+                    worker.map_err(|e| CampaignError::Threads { problem: e.to_string() })?;
                 while end.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {
                     if raised.is_none()
                         && let Err(error) = look()
