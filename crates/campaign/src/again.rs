@@ -4,7 +4,8 @@ use rayon::prelude::*;
 use std::sync::{Mutex, PoisonError, atomic::AtomicBool};
 
 use crate::{
-    folder::Blocks,
+    cell::Cell,
+    folder::{Blocks, FinishedRuns},
     simulation::{CampaignError, Simulation, go_on, run_range},
     table::Table,
 };
@@ -67,38 +68,32 @@ pub struct Changed {
 }
 
 /// Does the first finished run again that did not fail, and says what of it is another now, bit by bit: nothing if all is the
-/// same, or if there is no such run. It is written nowhere.
+/// same, or if there is no such run. Of what was not all kept, what was kept of it is compared, and of a run that failed if no other was
+/// kept. It is written nowhere.
 ///
 /// # Errors
-/// A block cannot be read; the simulation writes rows that do not fit its columns.
+/// A file cannot be read; the simulation writes rows that do not fit its columns.
 pub fn run_changed<S: Simulation>(
     simulations: &[(&str, S)],
-    blocks: &Blocks,
+    finished: &FinishedRuns,
 ) -> Result<Option<Changed>, CampaignError> {
-    for (name, simulation) in simulations {
-        let empty = Table::new(name, 0, simulation.columns())?;
-        let runs = blocks.runs(&empty, Vec::new());
-        let mut finished = blocks.ranges(name, 0);
-        finished.sort_by_key(|range| range.start);
-        for range in finished {
-            let Some(old) = runs.block(range.start)? else { continue };
-            let Some(row) = old.rows().find(|row| row.failure().is_none()) else { continue };
-            let run = row.run();
-            let new = run_range(simulation, &empty, run..run.saturating_add(1), &|_| Ok(()))?;
-            let Some(again) = new.rows().next() else { continue };
-            let mut pairs = row.cells().zip(again.cells());
-            return Ok(pairs.find(|((_, there), (_, now))| there != now).map(
-                |((column, there), (_, now))| Changed {
-                    model: (*name).to_owned(),
-                    run,
-                    column: column.name().to_owned(),
-                    there: there.to_string(),
-                    now: now.to_string(),
-                },
-            ));
-        }
-    }
-    Ok(None)
+    let models: Vec<&str> = simulations.iter().map(|(name, _)| *name).collect();
+    let Some(there) = finished.first(&models)? else { return Ok(None) };
+    let mut simulations = simulations.iter().filter(|(name, _)| *name == there.model);
+    let Some((name, simulation)) = simulations.next() else { return Ok(None) };
+    let empty = Table::new(name, 0, simulation.columns())?;
+    let run = there.run;
+    let new = run_range(simulation, &empty, run..run.saturating_add(1), &|_| Ok(()))?;
+    let Some(again) = new.rows().next() else { return Ok(None) };
+    let now = |column: &str| again.cell(column).unwrap_or(Cell::Null);
+    let mut cells = there.cells.into_iter().map(|(column, there)| (now(&column), column, there));
+    Ok(cells.find(|(now, _, there)| there != now).map(|(now, column, there)| Changed {
+        model: (*name).to_owned(),
+        run,
+        column,
+        there: there.to_string(),
+        now: now.to_string(),
+    }))
 }
 
 /// A table in which the runs that failed are those of the simulation now.

@@ -108,9 +108,9 @@ pub use external::{
 };
 pub use failure::Failure;
 pub use folder::{
-    Block, Blocks, Contents, Folder, FolderError, HIDDEN, MANIFEST, Manifest, Reduced, Shared,
-    begun, changed, folder_of, missing_runs, replacing, restore, restore_all, told, told_runs,
-    why_unknown,
+    Block, Blocks, Contents, FinishedRuns, Folder, FolderError, HIDDEN, MANIFEST, Manifest,
+    Reduced, Shared, begun, changed, folder_of, missing_runs, replacing, restore, restore_all,
+    told, told_runs, why_unknown,
 };
 pub use forecast::{Forecast, rough_size, rough_time};
 pub use foreign::{Columns, ForeignError, ForeignTable, OfModels, RowsError, TwiceError};

@@ -341,39 +341,71 @@ pub fn read_run(
     path: &Path,
     run: (&str, u64),
 ) -> Result<Option<Vec<(String, Cell<'static>)>>, RunsError> {
-    found_run(path, run).map_err(|problem| RunsError::of(path, problem))
+    let (model, run) = run;
+    let found = found_run(path, |row| row.model == model && row.run == run);
+    Ok(found.map_err(|problem| RunsError::of(path, problem))?.map(|(_, cells)| cells))
 }
+
+/// The number and the cells of the first run of a model in a table that was written that did not fail, or that may have.
+///
+/// # Errors
+/// As [`read_run`].
+pub(crate) fn first_run(
+    path: &Path,
+    model: &str,
+    may_fail: bool,
+) -> Result<Option<FoundRun>, RunsError> {
+    let found = found_run(path, |row| row.model == model && (may_fail || row.status_kind == OK));
+    found.map_err(|problem| RunsError::of(path, problem))
+}
+
+/// What says which run a row is, and how it ended.
+struct Said<'a> {
+    model: &'a str,
+    run: u64,
+    status_kind: &'a str,
+}
+
+/// The number of a run, and its cells by the names of their columns.
+type FoundRun = (u64, Vec<(String, Cell<'static>)>);
 
 fn found_run(
     path: &Path,
-    (model, run): (&str, u64),
-) -> Result<Option<Vec<(String, Cell<'static>)>>, ParquetError> {
+    is_it: impl Fn(Said<'_>) -> bool,
+) -> Result<Option<FoundRun>, ParquetError> {
     let reader = open(path)?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     let wrong = || ParquetError::General("it is no run table".to_owned());
     let place = |own: &Column| schema.columns().iter().position(|c| c.name() == own.name());
-    let [Some(models), Some(runs), _] = Column::first().each_ref().map(place) else {
+    let [model, run, _] = Column::first();
+    let [Some(models), Some(runs), Some(kinds)] = [&model, &run, &Column::status_kind()].map(place)
+    else {
         return Err(wrong());
     };
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group)?;
         let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
-        let (ColumnReader::ByteArrayColumnReader(models), ColumnReader::Int64ColumnReader(runs)) =
-            (group.get_column_reader(models)?, group.get_column_reader(runs)?)
-        else {
+        let texts = |place: usize| match group.get_column_reader(place)? {
+            ColumnReader::ByteArrayColumnReader(texts) => read(texts, rows),
+            _ => Err(wrong()),
+        };
+        let ColumnReader::Int64ColumnReader(runs) = group.get_column_reader(runs)? else {
             return Err(wrong());
         };
-        let of_model = |name: Option<ByteArray>| name.is_some_and(|n| n.data() == model.as_bytes());
-        let is_run = |number: Option<i64>| number.and_then(|n| u64::try_from(n).ok()) == Some(run);
-        let mut rows = read(models, rows)?.into_iter().zip(read(runs, rows)?);
-        let Some(place) = rows.position(|(name, number)| of_model(name) && is_run(number)) else {
-            continue;
-        };
+        let said = texts(models)?.into_iter().zip(texts(kinds)?).zip(read(runs, rows)?);
+        let found = said.enumerate().find_map(|(place, ((model, kind), run))| {
+            let (model, kind, run) = (model?, kind?, u64::try_from(run?).ok()?);
+            let text = |text| std::str::from_utf8(text).ok();
+            let row = Said { model: text(model.data())?, run, status_kind: text(kind.data())? };
+            is_it(row).then_some((place, run))
+        });
+        let Some((place, run)) = found else { continue };
         let cell = |i: usize| {
             let name = schema.column(i).name().to_owned();
             Ok((name, cell(group.get_column_reader(i)?, place)?))
         };
-        return (0..schema.num_columns()).map(cell).collect::<Result<_, ParquetError>>().map(Some);
+        let cells = (0..schema.num_columns()).map(cell).collect::<Result<_, ParquetError>>()?;
+        return Ok(Some((run, cells)));
     }
     Ok(None)
 }

@@ -138,3 +138,35 @@ def test_what_fits_the_stack_of_the_main_thread_fits_that_of_a_study(
     words = [sys.executable, "-c", RECURSION, *map(str, (depth, threads, in_main, declared))]
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, env={**os.environ, **environment})
     assert done.returncode == 0, done
+
+
+@pytest.mark.parametrize("rows", ["all", "failed", "none"])
+@pytest.mark.parametrize("columns", [None, ["x"], ["y"], ["x", "y"]])
+@pytest.mark.parametrize("change", [0.0, 1.0])
+def test_another_function_is_told_by_what_was_kept(rows: str, columns: list[str] | None, change: float, tmp_path: Path) -> None:
+    state = {"add": 0.0}
+
+    def simulate(inputs: dict[str, float]) -> dict[str, float]:
+        if inputs["x"] > 1.1:
+            raise ValueError(f"too long by {state['add']}")
+        return {"y": inputs["x"] + state["add"]}
+
+    def call() -> gyradius.Study:
+        return gyradius.study(
+            scenario(runs=300), simulate, outputs={"y": "m"}, out=tmp_path / "it", rows=rows, columns=columns, force=False
+        )
+
+    kept = call().to_numpy()["all"]
+    state["add"] = change
+    is_told = rows == "failed" or rows == "all" and (columns is None or "y" in columns)
+    if change and is_told:
+        with pytest.raises(ValueError, match="the function is not the one that did the finished runs"):
+            call()
+        return
+    study = call()
+    for name, values in study.to_numpy()["all"].items():
+        np.testing.assert_array_equal(values, kept[name])
+    if rows == "all" and not change:
+        said = str(study.replay(3))
+        assert ("the same, bit for bit, as in" in said) == (columns is None or columns == ["x", "y"])
+        assert ("bit for bit, in the columns that were kept, as in" in said) == (columns not in (None, ["x", "y"]))

@@ -46,7 +46,7 @@ fn run_to_the_end<C: Subject>(
     let blocks = folder.blocks((begun.0, &begun.1), scenario.runs(), options.force, &threads)?;
     let plan = plan(scenario, options, Doing::All);
     to_be_done(&simulations, plan, (&folder, &blocks), say)?;
-    same_as_before(scenario, &simulations, (folder.place(), &blocks), &threads)
+    same_as_before(scenario, &simulations, (folder.place(), &blocks.finished_runs()), &threads)
         .inspect_err(|_| blocks.abandon())?;
     let evidence = || {
         let own = scenario.model_names().map(|model| requirements_of(scenario, model)).collect();

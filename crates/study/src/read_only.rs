@@ -1,12 +1,12 @@
 //! A complete study in a folder that cannot be written, or in which another study is to replace it: nothing is to be done, and it is read.
 
-use gyradius_campaign::{Runs, told, told_runs};
+use gyradius_campaign::{FinishedRuns, Runs, threads, told, told_runs};
 
 use crate::{
     Options, Status, Study, StudyError,
     contents::{contents, identity},
     results,
-    study::empty_tables,
+    study::{empty_tables, same_as_before},
     subject::{Subject, Summarized},
 };
 
@@ -28,10 +28,13 @@ pub(crate) fn complete_study<C: Subject>(
         return Ok(None);
     }
     let models = scenario.prepare(None)?;
-    let empty = empty_tables(&scenario.simulations(&models)?)?;
-    let kept_all = scenario.kept().is_all();
+    let simulations = scenario.simulations(&models)?;
+    let empty = empty_tables(&simulations)?;
+    let kept = scenario.kept();
     let blocks = told(&place, &contents(scenario), &identity(scenario))?;
-    let runs = |empty| match kept_all {
+    let finished = FinishedRuns::in_place(&place, &blocks, &kept);
+    same_as_before(scenario, &simulations, (&place, &finished), &threads(options.threads)?)?;
+    let runs = |empty| match kept.is_all() {
         true => told_runs(&place, &blocks, &empty),
         false => Runs::from(empty),
     };

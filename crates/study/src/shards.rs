@@ -92,20 +92,19 @@ pub(crate) fn run_shard<C: Subject>(
     let place = options.place(scenario.name());
     agree(scenario, &place)?;
     if let Some(there) = folder.reduced(begun.0)? {
+        if scenario.runs() > there.runs() {
+            let (kept, damaged) = (there.kept().clone(), None);
+            return Err(StudyError::Reduced { path: place, kept, damaged });
+        }
         // All is done, also what this share would have been.
-        let (path, kept, damaged) = (place, there.kept().clone(), None);
-        return if scenario.runs() <= there.runs() {
-            Ok(())
-        } else {
-            Err(StudyError::Reduced { path, kept, damaged })
-        };
+        return same_as_before(scenario, &simulations, (&place, &there.finished_runs()), &threads);
     }
     let blocks = folder.blocks((begun.0, &begun.1), scenario.runs(), shard, &threads)?;
     // Asked again: of shards that begin at the same time, one has told by now what holds for all.
     agree(scenario, &place)?;
     let again = true;
     blocks.damaged().iter().for_each(|block| say(Notice::Damaged { block: block.clone(), again }));
-    same_as_before(scenario, &simulations, (&place, &blocks), &threads)?;
+    same_as_before(scenario, &simulations, (&place, &blocks.finished_runs()), &threads)?;
     let plan = plan(scenario, options, Doing::Shard(shard));
     let missing = |(place, (model, _)): (usize, &(&str, _))| plan.missing(&blocks, place, model);
     let left = simulations.iter().enumerate().map(|model| count(&missing(model))).sum::<u64>();

@@ -6,9 +6,9 @@ use crate::{
     model::{Model, Separations},
 };
 use gyradius_campaign::{
-    Blocks, CampaignError, Counting, Doing, Folder, Kept, MANIFEST, Plan, Progress, Reduced, Runs,
-    RunsError, Simulation, Table, disk_left, go_on, memory_left, run_again, run_changed,
-    run_missing, threads, told,
+    Blocks, CampaignError, Counting, Doing, FinishedRuns, Folder, Kept, MANIFEST, Plan, Progress,
+    Reduced, Runs, RunsError, Simulation, Table, disk_left, go_on, memory_left, run_again,
+    run_changed, run_missing, threads, told,
 };
 #[cfg(test)]
 use gyradius_campaign::{Cell, Row, run};
@@ -106,7 +106,7 @@ pub(crate) fn do_what_is_left<C: Subject>(
     let is_interrupted = ended.as_ref().is_some_and(Ended::is_interrupted);
     let is_ended = ended.is_some() && !is_interrupted;
     if !is_ended {
-        same_as_before(scenario, &simulations, (&place, &blocks), &threads)
+        same_as_before(scenario, &simulations, (&place, &blocks.finished_runs()), &threads)
             .inspect_err(|_| blocks.abandon())?;
     }
     let retries = options.retry_failed && !is_ended;
@@ -198,13 +198,13 @@ pub(crate) fn do_what_is_left<C: Subject>(
 pub(crate) fn same_as_before<C: Subject>(
     scenario: &C,
     simulations: &[(&str, C::Simulation<'_>)],
-    (place, blocks): (&Path, &Blocks),
+    (place, finished): (&Path, &FinishedRuns),
     threads: &ThreadPool,
 ) -> Result<(), StudyError> {
     if !scenario.may_change() {
         return Ok(());
     }
-    match threads.install(|| run_changed(simulations, blocks))? {
+    match threads.install(|| run_changed(simulations, finished))? {
         None => Ok(()),
         Some(changed) => {
             Err(StudyError::Changed { path: place.to_owned(), changed: Box::new(changed) })
@@ -290,6 +290,7 @@ fn reduced<C: Subject>(
     let place = folder.place().to_owned();
     match whole.then(|| whole_summary::<C>(&place)).flatten() {
         Some(summary) => {
+            same_as_before(scenario, simulations, (&place, &there.finished_runs()), threads)?;
             there.settle(&identity(scenario))?;
             let runs = empty_tables(simulations)?.into_iter().map(Runs::from).collect();
             Ok(Study { folder: place, runs, summary })

@@ -21,9 +21,9 @@ use crate::{
 /// A complete campaign of which not all rows and columns were kept: nobody can go on with it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reduced {
-    kept: Kept,
-    place: PathBuf,
-    blocks: Vec<Block>,
+    pub(super) kept: Kept,
+    pub(super) place: PathBuf,
+    pub(super) blocks: Vec<Block>,
 }
 
 impl Folder<'_> {

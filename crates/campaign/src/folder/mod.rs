@@ -13,6 +13,7 @@ mod adopt;
 mod area;
 mod blocks;
 mod disk;
+mod finished;
 mod hidden;
 mod journal;
 mod looked;
@@ -35,6 +36,7 @@ use std::{
 
 pub use adopt::Reduced;
 pub use blocks::Blocks;
+pub use finished::FinishedRuns;
 use hidden::{Hidden, real_folder};
 use journal::{Journal, Left, Replacement};
 pub use manifest::{Block, MANIFEST, Manifest};

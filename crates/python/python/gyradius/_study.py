@@ -44,7 +44,7 @@ class Verdict(NamedTuple):
 
 
 class Replay(NamedTuple):
-    """One run of a study, done again. Its row is that of the study, bit for bit."""
+    """One run of a study, done again. What was kept of its row is the same, bit for bit; `text` says if that is not all of it."""
 
     model: str
     """The model."""
@@ -181,7 +181,7 @@ class Study:
         vehicle: Real | None = None,
         flight: Real | None = None,
     ) -> Replay:
-        """Does one run again, alone, and holds it against its row, bit by bit.
+        """Does one run again, alone, and holds it against what was kept of its row, bit by bit.
 
         A function is called in the context that the caller of `gyradius.study` had, as it was then.
 
@@ -342,7 +342,8 @@ def study(
     Draws depend on seed, model and run alone, so results are the same on any number of threads, if the simulation depends on its
     inputs and its seed alone. The study says in ``simulation.function`` which function it is, by module, name and SHA-256 of the source, so
     that runs of different versions are not mixed in one folder. What the function calls and refers to is not in it; therefore one of the
-    finished runs in ``out`` is done again first, and a function that does it otherwise is refused. Say
+    finished runs in ``out`` is done again first, and a function that does it otherwise, in what was kept of it, is refused. With
+    ``rows="none"``, or ``columns`` that the other function leaves as they are, nothing can tell. Say
     ``{"simulation": {"function": "spin-up, version 3"}, ...}`` in the scenario to tell versions apart yourself.
 
     Each call of the function is in a copy of the caller's context (`contextvars`): precision of decimal numbers, and `numpy.seterr` from

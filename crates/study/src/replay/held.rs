@@ -28,8 +28,8 @@ pub(crate) enum Held {
     NotDone,
     /// Nothing: the study did not keep the row.
     NotKept,
-    /// What was kept of the row in a table.
-    To(PathBuf),
+    /// What was kept of the row in a table: all of its columns, or some.
+    To { table: PathBuf, whole: bool },
 }
 
 impl Held {
@@ -56,7 +56,7 @@ impl Held {
             && done.is_none_or(|done| done.again() < block.again())
         {
             Comparison { own, path: &path, causes }.compare_row(&Kept::default())?;
-            return Ok(Self::To(path));
+            return Ok(Self::To { table: path, whole: true });
         }
         let manifest = match manifest {
             Ok(manifest) => manifest,
@@ -89,14 +89,18 @@ impl Held {
                 }
             }
         };
-        Ok(if is_the_same { Self::To(path) } else { Self::NotKept })
+        let whole = kept.kept_columns(own).len() == own.columns().len();
+        Ok(if is_the_same { Self::To { table: path, whole } } else { Self::NotKept })
     }
 }
 
 impl fmt::Display for Held {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::To(table) => write!(f, "the same, bit for bit, as in {}", table.display()),
+            Self::To { table, whole } => {
+                let columns = if *whole { "" } else { " in the columns that were kept," };
+                write!(f, "the same, bit for bit,{columns} as in {}", table.display())
+            }
             Self::NotDone => f.write_str(
                 "the study has not done this run yet: there is nothing to hold it against",
             ),

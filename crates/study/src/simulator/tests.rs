@@ -5,6 +5,7 @@ mod failing;
 mod fleets;
 mod function;
 mod joint;
+mod kept;
 mod models;
 mod refusals;
 mod told;

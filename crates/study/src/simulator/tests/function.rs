@@ -1,6 +1,6 @@
 //! Functions in the place of a command: the same study, to the byte; what is refused without them.
 
-use gyradius_campaign::{Cell, Event, KeptRuns, KeptValues, Outputs, RunInputs, SimulatorFunction};
+use gyradius_campaign::{Event, Outputs, RunInputs, SimulatorFunction};
 use proptest::prelude::*;
 use std::{
     collections::BTreeMap,
@@ -17,15 +17,15 @@ use super::{
     uniform,
 };
 use crate::{
-    AnyScenario, CampaignError, Kept, Options, RareMethod, RareOptions, ReplayError, Rows,
-    Scenario, Shard, Status, StudyError, put_together, write_report,
+    AnyScenario, CampaignError, Options, RareMethod, RareOptions, ReplayError, Scenario, Shard,
+    Status, StudyError, put_together, write_report,
 };
 
-const COMMAND: &str = "command = [\"sh\", \"answer.sh\"]\ntimeout_s = 60.0\n";
-const FUNCTION: &str = "function = \"as the script\"\n";
+pub(super) const COMMAND: &str = "command = [\"sh\", \"answer.sh\"]\ntimeout_s = 60.0\n";
+pub(super) const FUNCTION: &str = "function = \"as the script\"\n";
 
 /// Answers as the script does.
-fn answer() -> SimulatorFunction {
+pub(super) fn answer() -> SimulatorFunction {
     SimulatorFunction::new(|run: &RunInputs<'_>| {
         let x = run.input("x").ok_or("no x")?;
         if (0.9..1.0).contains(&x) {
@@ -365,71 +365,6 @@ fn refusals_name_their_key() {
         })
         .contains("never")
     );
-}
-
-/// What a study kept, column by column, is what its tables have.
-#[test]
-fn kept_columns_are_those_of_the_tables() {
-    let folder = folder();
-    let text = uniform().replace(COMMAND, FUNCTION) + "\n[[bodies]]\nname = \"hub\"";
-    let text = (text + &BODY.replace("DISPERSION", "") + MODELS)
-        .replace("runs = 300", "vehicles = 60\nflights = 10");
-    let given = scenario(&text, folder.path()).with_function(answer()).unwrap();
-    for (place, (rows, columns)) in [
-        (Rows::All, None),
-        (Rows::Failed, None),
-        (Rows::All, Some(vec!["y".to_owned()])),
-        (Rows::None, None),
-    ]
-    .into_iter()
-    .enumerate()
-    {
-        let out = folder.path().join(place.to_string());
-        let options = Options::to(out.clone());
-        let all =
-            given.clone().study(&Options::to(folder.path().join("all")), &|_| {}, &|_| {}).unwrap();
-        given
-            .clone()
-            .with_kept(&Kept::new(rows, columns.clone()))
-            .study(&options, &|_| {}, &|_| {})
-            .unwrap();
-        for table in all.tables().unwrap() {
-            let kept = KeptRuns::read(&out, table.model()).unwrap();
-            let expected: Vec<_> = table
-                .rows()
-                .filter(|row| rows == Rows::All || rows == Rows::Failed && row.failure().is_some())
-                .collect();
-            assert_eq!((kept.model(), kept.len()), (table.model(), expected.len()));
-            assert_eq!(kept.is_empty(), rows == Rows::None);
-            let own = ["model", "run", "status", "status_kind", "vehicle", "flight"];
-            let named = |name: &str| {
-                columns.as_ref().is_none_or(|c| own.contains(&name) || c.contains(&name.to_owned()))
-            };
-            let there: Vec<_> =
-                table.columns().iter().filter(|c| rows != Rows::None && named(c.name())).collect();
-            assert_eq!(kept.columns().len(), there.len());
-            for (column, own) in there.into_iter().zip(kept.columns()) {
-                let said = (own.name(), own.unit(), own.meaning());
-                assert_eq!(said, (column.name(), column.unit(), column.meaning()));
-                for (place, row) in expected.iter().enumerate() {
-                    let found = match own.values() {
-                        KeptValues::Numbers(numbers) => {
-                            Some(numbers[place]).filter(|x| !x.is_nan()).into()
-                        }
-                        KeptValues::Integers(integers) => {
-                            integers[place].map_or(Cell::Null, Cell::Integer)
-                        }
-                        KeptValues::Texts(texts) => {
-                            texts.texts().nth(place).unwrap().map_or(Cell::Null, Cell::from)
-                        }
-                        KeptValues::Flags(flags) => flags[place].map_or(Cell::Null, Cell::Flag),
-                    };
-                    assert_eq!(Some(found), row.cell(column.name()), "{}", column.name());
-                }
-            }
-        }
-    }
-    assert!(KeptRuns::read(folder.path(), "proposed").is_err());
 }
 
 /// What a rule ended is read without the function once it is complete. More of it needs the function.
