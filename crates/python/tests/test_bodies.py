@@ -119,6 +119,49 @@ def test_plates_and_rods_in_32_bits_stay_bodies() -> None:
     assert MassProperties(*parts, narrow.astype(float)).is_realizable.tolist() == (~lost).tolist()
 
 
+@given(st.integers(0, 2**32), st.sampled_from(["<f4", ">f4"]), st.floats(-3.0, 3.0))
+def test_plates_and_rods_of_32_bits_stay_bodies_however_they_are_given(seed: int, dtype: str, far: float) -> None:
+    """Of the same bodies in 64 bits, what is known of their 32 bits, about any point and as pseudo-inertias, is a body beside them."""
+    rng = np.random.default_rng(seed)
+    flat = inertias(rng, 100)
+    mass = np.trace(flat, axis1=1, axis2=2) / 10.0 ** rng.uniform(-2, 2, 100)
+    centre = 10.0**far * rng.normal(size=(100, 3)) * np.sqrt(np.trace(flat, axis1=1, axis2=2) / mass)[:, None]
+    exact = MassProperties(mass, centre, flat)
+    about = exact.inertia_about(np.zeros(3))
+    size = np.trace(about, axis1=1, axis2=2)
+    narrow = [np.asarray(one).astype(dtype) for one in (mass, centre, about, exact.pseudo_inertia, flat, exact.array)]
+    at_centre = MassProperties(mass, centre, narrow[4])
+    assert at_centre == MassProperties(mass, centre, narrow[4].astype("=f4"))
+    made = {
+        "inertia": (at_centre, np.trace(flat, axis1=1, axis2=2)),
+        "of": (MassProperties.of(narrow[5]), np.trace(flat, axis1=1, axis2=2)),
+        "about_point": (MassProperties.about_point(narrow[0], narrow[1], narrow[2]), size),
+        "pseudo_inertia": (MassProperties.from_pseudo_inertia(narrow[3]), size),
+    }
+    for name, (found, rounded) in made.items():
+        assert found.is_realizable.all(), name
+        # Moved by no more than what 32 bits leave of the numbers that were given.
+        assert (np.abs(found.inertia - flat).max(axis=(1, 2)) <= 3e-5 * rounded).all(), name
+        assert (found.mass == np.asarray(found.mass, np.float32)).all() or name == "inertia"
+
+
+def test_what_is_no_body_for_more_than_rounding_stays_none_in_32_bits() -> None:
+    outside = np.diag([1.0, 1.0, 2.001])
+    second = 0.5 * np.trace(outside) * np.eye(3) - outside
+    pseudo = np.eye(4)
+    pseudo[:3, :3] = second
+    for dtype in ("<f4", ">f4"):
+        made = MassProperties.about_point(1.0, np.zeros(3), outside.astype(dtype))
+        assert not made.is_realizable and (made.inertia == outside.astype("f4")).all()
+        with pytest.raises(ValueError):
+            MassProperties.from_pseudo_inertia(pseudo.astype(dtype))
+        for entry, value in (((0, 1), 0.1), ((3, 3), -1.0), ((1, 1), np.nan)):
+            wrong = np.eye(4)
+            wrong[entry] = value
+            with pytest.raises(ValueError):
+                MassProperties.from_pseudo_inertia(wrong.astype(dtype))
+
+
 def test_shapes_and_parts() -> None:
     many = MassProperties.of(bodies(np.random.default_rng(1), 12).array.reshape(3, 4, 10))
     assert many.shape == (3, 4) and len(many) == 3 and many.centre.shape == (3, 4, 3)

@@ -27,6 +27,9 @@ Size: TypeAlias = Union[Whole, Sequence[Whole], None]
 
 ORDERS = ("xyzw", "wxyz")
 
+SINGLE = np.dtype(np.float32)
+"""Floats of 32 bits."""
+
 
 def whole(name: str, value: Any, most: int, *, of_float: bool = False) -> int:
     """A whole number from 0 to the greatest that is allowed; with `of_float` also one that is written as ``1e6``."""
@@ -86,6 +89,11 @@ def own_numbers(name: str, value: ArrayLike) -> NDArray[Any]:
     if array.dtype.kind == "c":
         raise ValueError(f"{name}: it must be real numbers, not {array.dtype}")
     return array
+
+
+def is_single(array: NDArray[Any]) -> bool:
+    """Whether an array has floats of 32 bits, in whatever order of their bytes."""
+    return array.dtype.kind == SINGLE.kind and array.dtype.itemsize == SINGLE.itemsize
 
 
 def numbers(name: str, value: ArrayLike) -> NDArray[np.float64]:

@@ -14,11 +14,13 @@ import numpy as np
 
 from gyradius import _core
 from gyradius._arrays import (
+    SINGLE,
     attitudes,
     flag,
     floating,
     folder_or_file,
     frozen,
+    is_single,
     numbers,
     ordered,
     out,
@@ -27,7 +29,7 @@ from gyradius._arrays import (
     together,
 )
 from gyradius._arrays import form as _form
-from gyradius._inertia import is_realizable, of_rounded
+from gyradius._inertia import is_realizable, of_rounded, rounding
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -62,9 +64,9 @@ class MassProperties:
 
     Ten numbers a body, in the last axis of `array`: mass in kg, mass centre in m in the axes of the body, and the
     entries 11, 22, 33, 12, 13, 23 of the inertia about the mass centre in kg·m², products as tensor entries. They need not be
-    those of a body: `is_realizable` says which are, and what computes with bodies refuses the others. Of inertias in 32 bits, whose
-    rounding takes about half of all plates out of what bodies have, those that lie outside by no more than this rounding, 7.6e-6 of the
-    trace, are replaced by the nearest that some body has.
+    those of a body: `is_realizable` says which are, and what computes with bodies refuses the others. Of inertias and pseudo-inertias
+    in 32 bits, whose rounding takes about half of all plates out of what bodies have, those that lie outside by no more than this
+    rounding, 7.6e-6 of the trace that was given, are replaced by the nearest that some body has.
 
     Parameters
     ----------
@@ -95,7 +97,7 @@ class MassProperties:
     def __init__(self, mass: ArrayLike, centre: ArrayLike, inertia: ArrayLike) -> None:
         given = own_numbers("inertia", inertia)
         parts, lead = together(("mass", mass, ()), ("centre", centre, (3,)), ("inertia", given, (3, 3)))
-        if given.dtype == np.float32:
+        if is_single(given):
             parts[2] = of_rounded(parts[2].reshape(-1, 3, 3)).reshape(-1, 9)
         self._set(_core.body_of_parts(*parts).reshape(*lead, 10))
 
@@ -107,7 +109,7 @@ class MassProperties:
         """The bodies of an array of shape (..., 10), in the order of `gyradius.COLUMNS`."""
         flat, lead = rows("array", array, (10,))
         bodies = flat.copy()
-        if own_numbers("array", array).dtype == np.float32:
+        if is_single(own_numbers("array", array)):
             rounded = of_rounded(bodies[:, MATRIX].reshape(-1, 3, 3))
             bodies[:, 4:] = np.stack([rounded[:, i, j] for i, j in ENTRIES], axis=1)
         return cls._of(bodies.reshape(*lead, 10))
@@ -123,17 +125,24 @@ class MassProperties:
         cls, mass: ArrayLike, centre: ArrayLike, inertia: ArrayLike, point: ArrayLike = (0.0, 0.0, 0.0)
     ) -> MassProperties:
         """The bodies of which the inertia is known about another point than the mass centre, such as the origin."""
-        known = ("mass", mass, ()), ("centre", centre, (3,)), ("inertia", inertia, (3, 3)), ("point", point, (3,))
+        given = own_numbers("inertia", inertia)
+        known = ("mass", mass, ()), ("centre", centre, (3,)), ("inertia", given, (3, 3)), ("point", point, (3,))
         (m, c, i, p), lead = together(*known)
         at = c - p
         square = (at * at).sum(axis=-1)[:, None, None] * np.eye(3)
         moved = m[:, :, None] * (square - at[:, :, None] * at[:, None, :])
-        return cls(m.reshape(lead), c.reshape(*lead, 3), (i.reshape(-1, 3, 3) - moved).reshape(*lead, 3, 3))
+        own = i.reshape(-1, 3, 3) - moved
+        if is_single(given):
+            own = of_rounded(own, i[:, ::4].sum(axis=1))
+        return cls(m.reshape(lead), c.reshape(*lead, 3), own.reshape(*lead, 3, 3))
 
     @classmethod
     def from_pseudo_inertia(cls, pseudo_inertia: ArrayLike) -> MassProperties:
         """The bodies of pseudo-inertias ∫ (x, 1)(x, 1)ᵀ dm of shape (..., 4, 4)."""
-        flat, lead = rows("pseudo_inertia", pseudo_inertia, (4, 4))
+        given = own_numbers("pseudo_inertia", pseudo_inertia)
+        flat, lead = rows("pseudo_inertia", given, (4, 4))
+        if is_single(given):
+            flat = _of_rounded_pseudo_inertia(flat.reshape(-1, 4, 4)).reshape(-1, 16)
         return cls._of(_core.body_from_pseudo_inertia(flat).reshape(*lead, 10))
 
     @classmethod
@@ -476,6 +485,34 @@ def pseudo_inertia(bodies: MassProperties | ArrayLike) -> NDArray[np.float64]:
 def log_cholesky(bodies: MassProperties | ArrayLike) -> NDArray[np.float64]:
     """The log-Cholesky coordinates of bodies, or of an array (..., 10): shape (..., 10). See `MassProperties.log_cholesky`."""
     return _bodies(bodies).log_cholesky
+
+
+def _exchanged(matrices: NDArray[np.float64], share: float) -> NDArray[np.float64]:
+    """Inertias of second moments, with the share 1; second moments of inertias, with the share 1/2."""
+    return share * np.trace(matrices, axis1=1, axis2=2)[:, None, None] * np.eye(3) - matrices
+
+
+def _of_rounded_pseudo_inertia(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Pseudo-inertias (n, 4, 4) of numbers that were rounded to 32 bits, with what `of_rounded` makes of the inertias about mass centres.
+
+    What is no pseudo-inertia for another reason stays as it is.
+    """
+    mass = matrices[:, 3, 3]
+    turned = matrices.transpose(0, 2, 1)
+    # Entries have different units: what they are sums of is no larger than this.
+    roots = np.sqrt(np.abs(np.diagonal(matrices, axis1=1, axis2=2)))
+    is_near = np.abs(matrices - turned) <= rounding(SINGLE) * roots[:, :, None] * roots[:, None, :]
+    fine = np.isfinite(matrices).all(axis=(1, 2)) & is_near.all(axis=(1, 2)) & (mass > 0)
+    found = matrices.copy()
+    if fine.any():
+        mean = 0.5 * (matrices + turned)[fine]
+        about, first, mass = mean[:, :3, :3], mean[:, :3, 3], mass[fine, None, None]
+        of_centre = first[:, :, None] * first[:, None, :] / mass
+        own = _exchanged(about - of_centre, 1.0)
+        body = of_rounded(own, 2.0 * np.trace(about, axis1=1, axis2=2))
+        mean[:, :3, :3] += _exchanged(body - own, 0.5)
+        found[fine] = mean
+    return found
 
 
 def _bodies(bodies: MassProperties | ArrayLike) -> MassProperties:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import ordered, out, own_numbers, real, rows, text
+from gyradius._arrays import SINGLE, ordered, out, own_numbers, real, rows, text
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -187,13 +187,20 @@ def nearest(
     return out(_core.inertia_nearest(flat, text("method", method)), (*lead, 3, 3), dtype)
 
 
-def of_rounded(inertia: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Inertias that were rounded to 32 bits: the nearest of some body in the place of those that only this rounding took from all bodies."""
-    lost = ~is_realizable(inertia) & is_realizable(inertia, _tolerance(None, np.dtype(np.float32)))
+def of_rounded(inertia: NDArray[np.float64], beside: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+    """Inertias (n, 3, 3) of numbers that were rounded to 32 bits: the nearest of some body in the place of those that only this rounding
+    took from all bodies. `beside` has the traces of the inertias that were rounded, if these follow from others."""
+    sizes = np.trace(inertia, axis1=1, axis2=2) if beside is None else beside
+    allowed = rounding(SINGLE) * sizes[:, None, None]
+    turned = inertia.transpose(0, 2, 1)
+    mean = 0.5 * (inertia + turned)
+    is_near = (np.abs(inertia - turned) <= allowed).all(axis=(1, 2))
+    # Which adds what is allowed to each of the second moments.
+    lost = ~is_realizable(inertia) & is_near & is_realizable(mean + 2.0 * allowed * np.eye(3))
     if not lost.any():
         return inertia
     found = inertia.copy()
-    found[lost] = nearest(inertia[lost])
+    found[lost] = nearest(mean[lost])
     return found
 
 
@@ -262,10 +269,15 @@ def _transposed_rotation(xyzw: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.moveaxis(np.array(entries), 2, 0)
 
 
+def rounding(dtype: np.dtype[Any]) -> float:
+    """64 units in the last place of floats of this type, as a share: what results of them are off by at most."""
+    return 64.0 * float(np.finfo(dtype).eps)
+
+
 def _tolerance(tolerance: Real | None, dtype: np.dtype[Any]) -> float | None:
     """What is said; otherwise 64 units in the last place of numbers of this type, of which the compiled part knows those of 64 bits."""
     if tolerance is None:
-        return 64.0 * float(np.finfo(dtype).eps) if dtype.kind == "f" and dtype.itemsize < 8 else None
+        return rounding(dtype) if dtype.kind == "f" and dtype.itemsize < 8 else None
     found = real("tolerance", tolerance)
     if not 0.0 <= found < np.inf:
         raise ValueError(f"tolerance = {tolerance!r}: it must be zero or positive, and finite")
