@@ -133,8 +133,8 @@ impl RealizabilityReport {
     }
 
     /// The same with another tolerance, as a share of tr I: numbers with six digits put plates and rods
-    /// up to 1e-6 beyond the boundary, and a matrix may be as far from symmetric. NaN or a negative
-    /// tolerance allow nothing.
+    /// up to 1e-6 beyond the boundary, and a matrix may be as far from symmetric. A smaller tolerance than
+    /// [`RELATIVE_TOLERANCE`], also NaN or a negative one, is taken as that one: the computation itself rounds by as much.
     #[must_use]
     pub fn within(matrix: &Matrix3<f64>, tolerance: f64) -> Self {
         let tolerance = tolerance.max(RELATIVE_TOLERANCE);
@@ -578,6 +578,24 @@ mod tests {
     }
 
     proptest! {
+        /// No tolerance below that of rounding is another one than that.
+        #[test]
+        fn a_tolerance_below_rounding_is_that_of_rounding(
+            moments in prop::array::uniform2(0.0..5.0f64),
+            beyond in -3.0..3.0f64,
+            skew in -3.0..3.0f64,
+            turn in prop::array::uniform3(-1.0..1.0f64),
+            below in prop_oneof![Just(f64::NAN), Just(0.0), -1.0..0.0f64, 0.0..RELATIVE_TOLERANCE],
+        ) {
+            let [a, b] = moments;
+            let rotation = nalgebra::Rotation3::new(turn.into()).into_inner();
+            let plate = diagonal([a, b, (a + b) * (1.0 + beyond * RELATIVE_TOLERANCE)]);
+            let mut matrix = rotation * plate * rotation.transpose();
+            matrix[(0, 1)] += skew * RELATIVE_TOLERANCE * plate.amax();
+            let found = RealizabilityReport::within(&matrix, below);
+            prop_assert_eq!(found, RealizabilityReport::of(&matrix));
+        }
+
         /// The report and the yes/no question agree, at every scale, and there is always a reason.
         #[test]
         fn reports_agree_with_the_question(

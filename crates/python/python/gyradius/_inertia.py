@@ -26,7 +26,8 @@ def is_realizable(inertia: ArrayLike, tolerance: Real | None = None) -> Any:
     inertia : array_like, shape (..., 3, 3)
         In kg·m² about any point, with products as tensor entries, I₁₂ = -∫ x₁ x₂ dm.
     tolerance : float, optional
-        How far below zero a second moment may be, and how far from symmetric a matrix, as a share of its trace. If it is not said,
+        How far below zero a second moment may be, and how far from symmetric a matrix, as a share of its trace. Less than 1.4e-14, also
+        zero, is taken as 1.4e-14: the computation itself rounds by as much. If it is not said,
         64 units in the last place of the type of the array, for rounding: 1.4e-14 in 64 bits and 7.6e-6 in 32 bits. In 16 bits it is
         0.0625, so that a moment may exceed the sum of the others by a tenth: convert such arrays, and state a tolerance. Numbers with
         six digits need 1e-6.
