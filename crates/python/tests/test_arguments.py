@@ -47,6 +47,32 @@ def test_columns_that_are_no_names_are_refused(wrong: Any) -> None:
         study(columns=wrong)
 
 
+SCALARS = ("mass", "centre1", "centre2", "centre3", "shape1", "shape2", "shape3")
+
+
+@pytest.mark.parametrize("by_length", [True, False])
+@pytest.mark.parametrize("pair", [(one, other) for one in SCALARS for other in SCALARS if one < other])
+@pytest.mark.parametrize("varying", [set(), {0}, {1}, {0, 1}])
+def test_numbers_have_no_correlation(by_length: bool, pair: tuple[str, str], varying: set[int]) -> None:
+    given: dict[str, Any] = dict(zip(SCALARS, [2.0, 0.1, 0.2, 0.3, 0.3, 0.25, 0.2]))
+    for place in varying:
+        given[pair[place]] = gyradius.normal(given[pair[place]], 0.01)
+    mass, *others = given.values()
+    shape = {"gyration_lengths" if by_length else "roots": others[3:]}
+
+    def made() -> gyradius.MassPropertiesLaw:
+        return gyradius.MassPropertiesLaw.joint(
+            mass, others[:3], axes=gyradius.uniform_attitude(), correlations=[(*pair, 0.5)], **shape
+        )
+
+    if len(varying) == 2:
+        made()
+        return
+    fixed = next(name for place, name in enumerate(pair) if place not in varying)
+    with pytest.raises(ValueError, match=rf"^correlations\[0\] = .*: {fixed} is the number .*, which does not vary"):
+        made()
+
+
 @pytest.mark.parametrize("way", [tuple, iter, lambda pairs: (pair for pair in pairs), lambda pairs: [list(pair) for pair in pairs]])
 def test_correlations_may_be_whatever_gives_pairs(way: Callable[[list[Any]], Any]) -> None:
     pairs = [("mass", "shape1", 0.6), ("mass", "shape2", np.float32(0.25))]

@@ -67,7 +67,8 @@ class MassPropertiesLaw(LawOfBodies):
             The share of the relative change of the mass, from its nominal value, that the inertia takes. With roots or a law of
             the inertia alone.
         correlations : sequence of (str, str, float)
-            Between ``"mass"``, ``"centre1"`` to ``"centre3"`` and ``"shape1"`` to ``"shape3"`` (lengths or roots).
+            Between ``"mass"``, ``"centre1"`` to ``"centre3"`` and ``"shape1"`` to ``"shape3"`` (lengths or roots), each of which must
+            have a law and not be a number.
         inside : Region
             Where the matter must be possible: draws that are not are drawn again.
 
@@ -92,6 +93,7 @@ class MassPropertiesLaw(LawOfBodies):
         given = [one is not None for one in (gyration_lengths, roots, inertia)]
         if sum(given) != 1:
             raise ValueError("one of gyration_lengths, roots and inertia must be given")
+        given_scalars = {"mass": mass, **{f"centre{i + 1}": law for i, law in enumerate(three("centre", centre))}}
         if inertia is not None:
             if axes is not None:
                 raise ValueError("axes: a law of the inertia has its own")
@@ -101,7 +103,9 @@ class MassPropertiesLaw(LawOfBodies):
             given_laws = roots if gyration_lengths is None else gyration_lengths
             if axes is None:
                 raise ValueError(f"axes: {name} need a law of attitudes")
-            laws = [scalar(f"{name}[{i}]", law) for i, law in enumerate(three(name, given_laws))]
+            shape = three(name, given_laws)
+            given_scalars |= {f"shape{i + 1}": law for i, law in enumerate(shape)}
+            laws = [scalar(f"{name}[{i}]", law) for i, law in enumerate(shape)]
             of = {name.replace("_", "-"): {"laws": laws, "axes": axes.form}}
         tensor: dict[str, Any] = {"of": of}
         if follows is None and nominal_mass is not None:
@@ -117,7 +121,7 @@ class MassPropertiesLaw(LawOfBodies):
         }
         pairs = [] if correlations is None else listed("correlations", correlations, "pairs with their correlation, each of two names and a number")
         if pairs:
-            said["correlations"] = [_pair(f"correlations[{i}]", pair) for i, pair in enumerate(pairs)]
+            said["correlations"] = [_pair(f"correlations[{i}]", pair, given_scalars) for i, pair in enumerate(pairs)]
         if inside is not None:
             said["inside"] = inside.form
         return MassPropertiesLaw.of(said)
@@ -218,12 +222,18 @@ class MassPropertiesLaw(LawOfBodies):
         return short(self)
 
 
-def _pair(name: str, pair: Any) -> list[Any]:
-    """Two names and their correlation."""
+def _pair(name: str, pair: Any, given: Mapping[str, Any]) -> list[Any]:
+    """Two names and their correlation; `given` has what was given for each name."""
     if not isinstance(pair, (list, tuple)) or len(pair) != 3:
         raise ValueError(f"{name} = {pair!r}: it must be two names and a number")
     one, other, value = pair
-    return [text(name, one), text(name, other), real(name, value)]
+    names = [text(name, one), text(name, other)]
+    said = [*names, real(name, value)]
+    for fixed in names:
+        law = given.get(fixed)
+        if law is not None and not isinstance(law, (ScalarLaw, Mapping)):
+            raise ValueError(f"{name} = {pair!r}: {fixed} is the number {law!r}, which does not vary: give it a law, or leave the pair away")
+    return said
 
 
 def ten_of(name: str, body: MassProperties) -> tuple[float, ...]:
