@@ -1,15 +1,16 @@
 //! A sketch of bodies and what pushes them apart, in views side by side to one scale.
 
+mod labels;
+
 use crate::Drawing;
 use crate::field::{TICK, WIDTH};
 use crate::legend::{Entry, legend};
 use crate::numbers::round_below;
 use crate::style::{self, MARGIN};
 use crate::svg::{Anchor, Look, Svg, px};
-use crate::text::{fit, significant, width};
+use crate::text::{fit, significant};
 
 const NAME: Look = Look::new(12.5, style::INK).bold();
-const NUMBER: Look = Look::new(12.0, style::INK).bold();
 /// Room for a view: all of it, and what is left around the bodies for numbers.
 const VIEW: (f64, f64) = (222.0, 250.0);
 const ROOM: f64 = 26.0;
@@ -209,36 +210,8 @@ fn draw(svg: &mut Svg, view: &SketchView, (left, top): (f64, f64), scale: f64) {
     for (i, body) in view.bodies.iter().enumerate() {
         mass_centre(svg, at(&body.mass_centre), style::model(i));
     }
-    numbers(svg, view, centre[0], at);
+    labels::draw(svg, view, left, at);
     axes(svg, &view.axes, (left, top + VIEW.1 + 40.0));
-}
-
-/// Numbers of springs beside them, away from the middle; of those that are behind each other together.
-fn numbers(svg: &mut Svg, view: &SketchView, middle: f64, at: impl Fn(&[f64; 2]) -> [f64; 2]) {
-    let mut places: Vec<([f64; 2], Vec<&str>)> = Vec::new();
-    for (name, ends) in &view.springs {
-        let [a, b] = ends.each_ref().map(&at);
-        let half = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
-        let near = |place: &[f64; 2]| {
-            (place[0] - half[0]).abs() < 14.0 && (place[1] - half[1]).abs() < 13.0
-        };
-        match places.iter_mut().find(|(place, _)| near(place)) {
-            Some((_, names)) => names.push(name),
-            None => places.push((half, vec![name])),
-        }
-    }
-    for ([x, y], names) in places {
-        let names = fit(&names.join(", "), NUMBER.size, 90.0);
-        let (x, anchor) =
-            if x < middle - 1.0 { (x - 7.0, Anchor::End) } else { (x + 7.0, Anchor::Start) };
-        // Within the figure.
-        let wide = width(&names, NUMBER.size);
-        let x = match anchor {
-            Anchor::End => x.max(wide + 2.0),
-            Anchor::Start | Anchor::Middle => x.min(WIDTH - wide - 2.0),
-        };
-        svg.text(x, y + 4.0, NUMBER.at(anchor), &names);
-    }
 }
 
 /// Arrows of the axes that are not seen from their end, in a corner.
