@@ -84,6 +84,8 @@ const knee = data.releases.length && last < end / 4 ? 1.2 * last : end;
 const share = (t) => (end > 0 ? (knee === end ? t / end : t <= knee ? 0.5 * t / knee : 0.5 + 0.5 * (t - knee) / (end - knee)) : 0);
 const timeAt = (x) => (knee === end ? x * end : x <= 0.5 ? 2 * x * knee : knee + (2 * x - 1) * (end - knee));
 const shown = (t) => t.toFixed(end < 1 ? 5 : 3);
+// Numbers that are stated once, with as many digits as the terminal has.
+const rounded = (x) => `${+x.toPrecision(6)}`.replace(/-/g, "−");
 
 // One that fails has no start.
 const isPushing = (spring) => spring.from !== null && time >= spring.from && (spring.free === null || time < spring.free);
@@ -274,12 +276,12 @@ function draw() {
   const rows = [
     ["springs that push", `${pushing} of ${data.springs.length}`],
     ...(failed ? [["springs that never push", failed]] : []),
-    ...(late.length ? [["springs that start late", late.map((spring) => `${spring.name} at ${spring.from} s`).join(", ")]] : []),
+    ...(late.length ? [["springs that start late", late.map((spring) => `${spring.name} at ${rounded(spring.from)} s`).join(", ")]] : []),
     ["distance of the mass centres", `${away.toFixed(4)} m`],
     ...(now.apart === null ? [] : [["distance of the outlines", `${now.apart.toFixed(4)} m`]]),
     ["payload rates 1, 2, 3", `${rate(now.w[0])} deg/s`],
     ["stage rates 1, 2, 3", `${rate(now.w[1])} deg/s`],
-    ...(data.closest ? [["clearance after the last release", data.closest.d > 0 ? `${data.closest.d} m at ${data.closest.t} s` : `touch at ${data.closest.t} s`]] : []),
+    ...(data.closest ? [["clearance after the last release", data.closest.d > 0 ? `${rounded(data.closest.d)} m at ${rounded(data.closest.t)} s` : `touch at ${rounded(data.closest.t)} s`]] : []),
     ["nutation", now.nutation === null ? "–" : `${now.nutation.toFixed(4)}°`],
   ];
   const table = el("now");

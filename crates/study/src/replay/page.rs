@@ -21,13 +21,15 @@ const LOADS: usize = 200;
 pub(crate) fn html(replay: &Replay) -> String {
     let name = replay.scenario.name();
     let (model, run) = (&replay.model, replay.row().run());
+    let flight = replay.scenario.fleet().map(|fleet| format!(" {}", fleet.told(run)));
+    let flight = flight.unwrap_or_default();
     // JSON in a script must not end it.
     let data = data(replay).to_string().replace('<', "\\u003c");
     let outlines = replay.scenario.outlines().is_some();
     let mut loads = replay.case.separation.iter().flat_map(Separation::loads);
     let late_or_failed = loads.any(|(_, load)| load.start_s() != Some(0.0));
     let content = html! {
-        h1 { "Run " (run) " of " (model) }
+        h1 { "Run " (run) (flight) " of " (model) }
         p.lead {
             "Scenario " strong { (name) } ": payload and stage, seen from their common mass centre. "
             @if outlines {
@@ -81,12 +83,12 @@ pub(crate) fn html(replay: &Replay) -> String {
              the previous and the next event, r to reset; arrows, + and − turn and zoom the scene once it is chosen."
         } }
         @if !replay.history.releases.is_empty() {
-            p { small { "Marks on the slider, and dashed lines in the charts: springs let go, by their numbers. If that is over soon, it has the \
-                 first half of both." } }
+            p { small { "Marks on the slider, and dashed lines in the charts, show when each spring is released, by its number. Where the springs are \
+                 released early, the time up to the last release takes the first half of the slider and of the charts." } }
         }
         script { (PreEscaped("const data = ")) (PreEscaped(data)) (PreEscaped(";\n")) (PreEscaped(SCRIPT)) }
     };
-    page(&format!("{name}: {model}, run {run}"), STYLE, &content)
+    page(&format!("{name}: {model}, run {run}{flight}"), STYLE, &content)
 }
 
 /// What the script draws. Numbers have as many digits as can be seen.
