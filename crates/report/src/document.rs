@@ -121,19 +121,20 @@ impl Section {
     /// With a paragraph.
     #[must_use]
     pub fn paragraph(self, text: impl Into<Text>) -> Self {
-        self.and(Block::Paragraph(text.into()))
+        self.and(Block::Paragraph(text.into().with_signs()))
     }
 
     /// With what must not be overlooked, a paragraph each.
     #[must_use]
     pub fn warnings<T: Into<Text>>(self, texts: impl IntoIterator<Item = T>) -> Self {
-        texts.into_iter().fold(self, |section, text| section.and(Block::Warning(text.into())))
+        let signed = texts.into_iter().map(|text| text.into().with_signs());
+        signed.fold(self, |section, text| section.and(Block::Warning(text)))
     }
 
     /// With a list, if there is anything in it.
     #[must_use]
     pub fn list<T: Into<Text>>(self, items: impl IntoIterator<Item = T>) -> Self {
-        let items: Vec<Text> = items.into_iter().map(Into::into).collect();
+        let items: Vec<Text> = items.into_iter().map(|item| item.into().with_signs()).collect();
         if items.is_empty() { self } else { self.and(Block::List(items)) }
     }
 

@@ -143,15 +143,22 @@ fn panel(svg: &mut Svg, output: &DrivenOutput, top: f64) -> f64 {
 fn others(rest: &[&DrivingGroup]) -> Option<String> {
     let (count, unknown) = (rest.len(), rest.iter().filter(|group| group.total.is_none()).count());
     let (groups, shares) = if count == 1 { ("group", "share") } else { ("groups", "shares") };
-    let known = rest.first()?.total.map(|[_, share, _]| told(share));
-    Some(match (known, unknown) {
+    let most = rest.first()?.total.map(|[_, share, _]| told(share));
+    // As small a number stands for an upper bound, and is one.
+    let at_most = |most: String| match most.strip_prefix("< ") {
+        Some(bound) => format!("less than {bound}"),
+        None => format!("at most {most}"),
+    };
+    Some(match (most, unknown) {
         (None, _) => format!("{count} more {groups}, of unknown {shares}"),
-        (Some(most), 0) if count == 1 => format!("1 more group, which has {most} in all"),
-        (Some(most), 0) => {
-            format!("{count} more groups, of which none has more than {most} in all")
-        }
+        (Some(most), 0) if count == 1 => match most.strip_prefix("< ") {
+            Some(bound) => format!("1 more group, with a share of less than {bound} in all"),
+            None => format!("1 more group, with a share of {most} in all"),
+        },
+        (Some(most), 0) => format!("{count} more groups, each with {} in all", at_most(most)),
         (Some(most), _) => format!(
-            "{count} more groups, {unknown} of unknown shares and none of the others above {most} in all"
+            "{count} more groups, {unknown} of unknown shares and each of the others with {} in all",
+            at_most(most)
         ),
     })
 }
@@ -224,6 +231,7 @@ mod tests {
             for output in &outputs {
                 let more = output.groups.len().saturating_sub(MOST);
                 let said = format!("{more} more group");
+                prop_assert!(!seen.contains("than <") && !seen.contains("most <"), "{}", seen);
                 prop_assert!(!seen.contains("than unknown"), "{}", seen);
                 prop_assert!(more == 0 || seen.contains(&said), "{}", seen);
                 let ranked = output.ranked();

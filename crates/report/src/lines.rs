@@ -65,6 +65,8 @@ pub enum Range {
     Common,
     /// What each panel needs.
     Own,
+    /// The same in all panels, of shares in percent: to 100 at most.
+    Percent,
 }
 
 /// Panels in two columns; `levels` are the ticks of the horizontal axis, which is the same in all. Zeros
@@ -129,8 +131,12 @@ fn line_grid(
     let pitch = ROOM + w + GUTTER;
     let figure_width = 2.0 * MARGIN + pitch * columns as f64 - GUTTER + 12.0;
     let axes: Vec<Option<Axes>> = match range {
-        Range::Common => vec![Axes::new(panels, levels); panels.len()],
-        Range::Own => panels.iter().map(|p| Axes::new(std::slice::from_ref(p), levels)).collect(),
+        Range::Common => vec![Axes::new(panels, levels, f64::INFINITY); panels.len()],
+        Range::Percent => vec![Axes::new(panels, levels, 100.0); panels.len()],
+        Range::Own => {
+            let own = |p| Axes::new(std::slice::from_ref(p), levels, f64::INFINITY);
+            panels.iter().map(own).collect()
+        }
     };
     let mut svg = Svg::new();
     let mut y = svg.heading(title, figure_width);
@@ -226,7 +232,8 @@ struct Axes {
 }
 
 impl Axes {
-    fn new(panels: &[LinePanel], levels: &[f64]) -> Option<Self> {
+    /// Of panels whose values are at most so large by their nature.
+    fn new(panels: &[LinePanel], levels: &[f64], most: f64) -> Option<Self> {
         let usable = |p: &&LinePoint| p.y >= 0.0 && p.y.is_finite() && p.x > 0.0;
         let points = || panels.iter().flat_map(|p| &p.lines).flat_map(|l| &l.points).filter(usable);
         let positive = || points().map(|p| p.y).filter(|y| *y > 0.0).map(f64::log10);
@@ -253,6 +260,10 @@ impl Axes {
         }
         if y[1] - y[0] < 1.0 {
             y[1] = y[0] + 1.0;
+        }
+        if highest <= most.log10() && y[1] > most.log10() {
+            y[1] = most.log10();
+            y[0] = y[0].min(y[1] - 1.0);
         }
         let zeros = points().any(|p| !(p.y > 0.0) || p.y.log10() < y[0]);
         let log = |x: &f64| x.log10();
@@ -426,6 +437,26 @@ mod tests {
         }
         assert!(read(&line_grid("Title", &[], "", "", &[], Range::Common)).contains("no data"));
         assert!(read(&draw(&[f64::NAN])).contains("no data"));
+    }
+
+    /// An axis of percentages ends at 100 at most, and holds all of them; other axes go beyond.
+    #[test]
+    fn shares_end_at_a_hundred() {
+        for exponent in -60..=20 {
+            for others in [vec![], vec![0.0], vec![1e-4], vec![30.0, 100.0]] {
+                let largest = 10_f64.powf(0.1 * f64::from(exponent));
+                let panels = [panel(&[&[largest][..], &others].concat())];
+                let axes = Axes::new(&panels, &LEVELS, 100.0).unwrap();
+                assert!(
+                    axes.y[1] <= 2.0 && axes.y[1] - axes.y[0] >= 0.9,
+                    "{largest} {others:?}: {:?}",
+                    axes.y
+                );
+                assert!(axes.y[1] >= largest.log10() - 1e-12, "{largest}: {:?}", axes.y);
+            }
+        }
+        let beyond = Axes::new(&[panel(&[100.0])], &LEVELS, f64::INFINITY).unwrap();
+        assert!(beyond.y[1] > 2.0);
     }
 
     #[test]

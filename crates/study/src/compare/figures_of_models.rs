@@ -23,12 +23,13 @@ pub(super) fn pen(kind: ModelKind) -> (usize, bool) {
     (COLOURS.get(place).copied().unwrap_or(place), dashed)
 }
 
-/// What a figure says of itself.
+/// What a figure says of itself, and what its vertical axes span.
 struct Words {
     name: String,
     title: String,
     label: String,
     caption: String,
+    range: Range,
 }
 
 const UNREALIZABLE: &str = "compare-unrealizable";
@@ -93,6 +94,7 @@ impl ModelComparison {
                     title: "Draws that no body has".to_owned(),
                     label: "share of draws (%)".to_owned(),
                     caption,
+                    range: Range::Percent,
                 },
                 may_fail,
                 &share,
@@ -105,6 +107,8 @@ impl ModelComparison {
                     title: capital(measure),
                     label: with_unit(measure.headline().0, measure.unit()),
                     caption: String::new(),
+                    // Bodies are to be compared.
+                    range: Range::Common,
                 },
                 |_| true,
                 &move |r| headline(r, measure),
@@ -115,7 +119,7 @@ impl ModelComparison {
 
     fn figure(
         &self,
-        Words { name, title, label, caption }: &Words,
+        Words { name, title, label, caption, range }: &Words,
         shown: impl Fn(&ModelKind) -> bool,
         value: Value<'_>,
     ) -> Figure {
@@ -139,8 +143,7 @@ impl ModelComparison {
             x_label: "uncertainty (% of the largest moment)".to_owned(),
             y_label: label.clone(),
             levels: self.settings.levels_percent.clone(),
-            // Bodies are to be compared.
-            range: Range::Common,
+            range: *range,
         };
         Figure {
             name: name.clone(),
