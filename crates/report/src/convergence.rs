@@ -123,6 +123,9 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)]) -> String {
     if estimates().any(|e| 100.0 * e.interval.upper() > top) {
         above.push("Intervals of the first runs go on above this axis.".to_owned());
     }
+    if estimates().next().is_none() {
+        above.push("No run counts, so that there is no share to show.".to_owned());
+    }
     above.into_iter().for_each(|note| field.note(note));
     field.finish(&title, &description(models))
 }

@@ -115,7 +115,9 @@ impl Svg {
         title: &str,
         description: &str,
     ) -> String {
-        let style = format!("width:100%;min-width:0;max-width:{}px;height:auto", px(widest));
+        // Letters of 12 are 9 at least.
+        let (least, widest) = (px(0.75 * size.0), px(widest));
+        let style = format!("width:100%;min-width:{least}px;max-width:{widest}px;height:auto");
         self.whole(&style, size, title, description)
     }
 

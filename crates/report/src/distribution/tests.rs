@@ -73,8 +73,14 @@ proptest! {
             prop_assert!(seen.contains("a <name>") && !seen.contains(": ."));
             prop_assert!(names.iter().all(|name| seen.contains(name)));
             let least = sizes(&drawing.svg).into_iter().fold(f64::INFINITY, f64::min);
-            prop_assert!(least * 360.0 / crate::field::WIDTH >= 9.0, "{}", least);
+            let narrowest = 0.75 * crate::field::WIDTH;
+            let least_width = format!("min-width:{narrowest}px");
+            prop_assert!(drawing.svg.contains(&least_width));
+            prop_assert!(least * narrowest / crate::field::WIDTH >= 9.0, "{}", least);
         }
+        let seen = read(&convergence_figure("f", "c", &requirement, &models).svg);
+        let none = judged.iter().all(|judgement| judgement.counted() == 0);
+        prop_assert_eq!(seen.contains("No run counts"), none, "{}", seen);
         let seen = read(&distribution_figure("f", "c", &requirement, Some("furlong"), &models).svg);
         prop_assert!(seen.contains("limit") && seen.contains("x (furlong)"));
         let any_failed = judged.iter().any(|judgement| judgement.runs_without_number() > 0);
