@@ -17,12 +17,15 @@ use crate::text::{count, significant};
 /// wide enough to be seen. The vertical axis counts runs if in every panel all series have as many
 /// values, and is a density otherwise. Extreme values that would squeeze the rest are drawn at the
 /// edges of the axis, in the colours of their models, and a note says how many they are and how far they
-/// go. The colours of the models follow their first appearance.
+/// go. The colours of the models follow their first appearance, unless an order is [given](Self::in_colours_of).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HistogramGrid {
     title: String,
     columns: usize,
     panels: Vec<Option<Counted>>,
+    /// Names in the order of their colours, before all others.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    order: Vec<String>,
 }
 
 impl HistogramGrid {
@@ -35,13 +38,19 @@ impl HistogramGrid {
             panel.as_ref().map(|panel| Counted::new(panel, bins))
         };
         let panels = panels.iter().zip(bins).map(counted).collect();
-        Self { title: title.to_owned(), columns, panels }
+        Self { title: title.to_owned(), columns, panels, order: Vec::new() }
+    }
+
+    /// The same, with models in the colours that they have in another figure of models in this order.
+    #[must_use]
+    pub fn in_colours_of<'a>(self, models: impl IntoIterator<Item = &'a str>) -> Self {
+        Self { order: models.into_iter().map(str::to_owned).collect(), ..self }
     }
 
     /// The figure drawn.
     #[must_use]
     pub fn svg(&self) -> String {
-        draw(&self.title, &self.panels, self.columns.max(1))
+        draw(&self.title, &self.panels, self.columns.max(1), &self.order)
     }
 
     /// Bins and counts, as a sheet for each panel that has any.
@@ -83,10 +92,10 @@ fn plot(columns: usize) -> (f64, f64) {
     }
 }
 
-fn draw(title: &str, panels: &[Option<Counted>], columns: usize) -> String {
+fn draw(title: &str, panels: &[Option<Counted>], columns: usize, order: &[String]) -> String {
     let (width, height) = plot(columns);
     let density = panels.iter().flatten().any(sizes_differ);
-    let mut names = Vec::new();
+    let mut names: Vec<&str> = order.iter().map(String::as_str).collect();
     let cells: Vec<Option<Cell<'_>>> = panels
         .iter()
         .map(|panel| {
@@ -146,7 +155,8 @@ fn entries(names: &[&str], cells: &[Option<Cell<'_>>]) -> Vec<Entry> {
         swatch.path(pen, d);
         Entry { name: name.to_owned(), width, swatch }
     };
-    let names = names.iter().enumerate();
+    let shown = |(model, _): &(usize, &&str)| cells.iter().flatten().any(|cell| cell.shows(*model));
+    let names = names.iter().enumerate().filter(shown);
     let mut entries: Vec<Entry> = names
         .map(|(model, name)| entry(name, 20.0, &outline_pen(model), "M0 5v-10h20v10"))
         .collect();
@@ -192,6 +202,27 @@ fn summary(finite: usize, quantiles: Option<[f64; 3]>) -> String {
 mod tests {
     use super::*;
     use crate::{samples::Series, svg::tests::read};
+
+    /// In a figure of any of four models, in any order, each has the colour of its place among all, and the legend names those that are drawn.
+    #[test]
+    fn models_have_the_colours_of_an_order() {
+        let all = ["a1", "b2", "c3", "d4"];
+        let values = bell(50, 1.0);
+        for first in 0..4 {
+            for second in (0..4).filter(|second| *second != first) {
+                let series = [first, second].map(|i: usize| Series::new(all[i], &values, 50));
+                let label = "x".to_owned();
+                let panel = Some(Panel { label, series: series.to_vec(), nominal: None });
+                let svg = HistogramGrid::new("", &[panel], 1).in_colours_of(all).svg();
+                let seen = read(&svg);
+                for (i, name) in all.iter().enumerate() {
+                    let is_drawn = i == first || i == second;
+                    assert_eq!(svg.contains(style::model(i)), is_drawn, "{first} {second} {i}");
+                    assert_eq!(seen.lines().any(|line| line == *name), is_drawn, "{seen}");
+                }
+            }
+        }
+    }
 
     /// Drawn from what was written and read back.
     fn histogram_grid(title: &str, panels: &[Option<Panel<'_>>], columns: usize) -> String {

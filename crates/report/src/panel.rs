@@ -130,6 +130,10 @@ impl<'a> Cell<'a> {
         8.0 + ticks.map(|tick| width(&tick.label, TICK.size)).fold(0.0, f64::max)
     }
 
+    pub(crate) fn shows(&self, model: usize) -> bool {
+        self.models.contains(&model)
+    }
+
     pub(crate) fn marks_nominal(&self) -> bool {
         self.plot.as_ref().is_some_and(|(binned, _)| binned.nominal.is_some())
     }

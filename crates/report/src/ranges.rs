@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::axis::{Spacing, Units, ticks};
 use crate::data::{Field, Sheet};
+use crate::legend::{Entry, legend};
 use crate::panel::nominal_pen;
 use crate::style::{self, MARGIN};
 use crate::svg::{Anchor, Look, Svg, px};
@@ -87,7 +88,8 @@ fn range_grid(title: &str, rows: &[Label], panels: &[RangePanel]) -> String {
     let figure_width = 2.0 * MARGIN + room + (WIDTH + GUTTER) * columns.max(1.0) - GUTTER + 12.0;
     let height = ROW * rows.len() as f64;
     let mut svg = Svg::new();
-    let top = svg.heading(title, figure_width) + 12.0;
+    let y = svg.heading(title, figure_width);
+    let top = legend(&mut svg, entries(panels), y + 4.0, figure_width) + 10.0;
     for (i, row) in rows.iter().enumerate() {
         let y = top + ROW * (i as f64 + 0.5) + 4.2;
         svg.text(MARGIN + room - 10.0, y, NAME, &row.name);
@@ -97,6 +99,22 @@ fn range_grid(title: &str, rows: &[Label], panels: &[RangePanel]) -> String {
         draw(&mut svg, rows, panel, (left, top, height));
     }
     svg.finish((figure_width, top + height + 44.0), title, &description(rows, panels))
+}
+
+/// What the marks mean.
+fn entries(panels: &[RangePanel]) -> Vec<Entry> {
+    let mut swatch = Svg::new();
+    let pen = format!("stroke=\"{}\" stroke-width=\"3\" stroke-opacity=\"0.55\"", style::INK);
+    swatch.path(&pen, "M0 0h26");
+    let pen = format!("fill=\"{}\"", style::INK);
+    swatch.path(&pen, "M9 0a4 4 0 1 0 8 0a4 4 0 1 0 -8 0");
+    let range = Entry { name: "range and its middle".to_owned(), width: 26.0, swatch };
+    let mut swatch = Svg::new();
+    swatch.path(&nominal_pen(), "M2 -7v14");
+    let nominal = Entry { name: "nominal".to_owned(), width: 4.0, swatch };
+    let is_marked = panels.iter().any(|panel| panel.nominal.is_some_and(f64::is_finite));
+    let has_range = panels.iter().any(|panel| panel.ranges.iter().any(Option::is_some));
+    has_range.then_some(range).into_iter().chain(is_marked.then_some(nominal)).collect()
 }
 
 fn draw(svg: &mut Svg, rows: &[Label], panel: &RangePanel, (left, top, height): (f64, f64, f64)) {
@@ -199,6 +217,8 @@ mod tests {
                     ranges: vec![range, None],
                 };
                 let text = read(&range_grid("Title", &rows, &[panel.clone(), panel]));
+                let is_marked = nominal.is_some_and(f64::is_finite);
+                assert_eq!(text.contains("\nnominal\n"), is_marked, "{text}");
                 assert!(text.contains("wobble (deg)") && text.contains("two"), "{range:?}");
             }
         }

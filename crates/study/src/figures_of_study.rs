@@ -77,7 +77,10 @@ pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, runs: &[Seen]) ->
             Figure {
                 name: of_pair(name, pair),
                 caption: format!("{}. {}", comparison.title, title(what)),
-                picture: Picture::Histograms(HistogramGrid::new(&title(what), &panels, columns)),
+                picture: Picture::Histograms(
+                    HistogramGrid::new(&title(what), &panels, columns)
+                        .in_colours_of(scenario.model_names()),
+                ),
             }
         };
         let first = vec![Some(Quantity::InertiaRatio), Some(Quantity::Wobble)];
@@ -132,7 +135,9 @@ fn clearance(scenario: &Scenario, summary: &Summary, runs: &[Seen]) -> Option<Fi
     (!panels.is_empty()).then(|| Figure {
         name: CLEARANCE.to_owned(),
         caption: format!("{title}; runs in which they touch again are at 0"),
-        picture: Picture::Histograms(HistogramGrid::new(title, &panels, columns)),
+        picture: Picture::Histograms(
+            HistogramGrid::new(title, &panels, columns).in_colours_of(scenario.model_names()),
+        ),
     })
 }
 

@@ -89,12 +89,18 @@ impl Section {
             })
             .collect();
         let panels = SHOWN.map(panel);
+        let hollow = if names.iter().any(|name| name.hollow) {
+            ". A hollow point marks a model whose covariance is further off than that of a body known exactly (100 %), so that it is \
+             not like for like"
+        } else {
+            ""
+        };
         let title = "Every model with the payload's mean and covariance";
         Some(Figure {
             name: EVERY_MODEL.to_owned(),
             caption: format!(
                 "{title}: median and middle 90 % of {DRAWS} draws (nutation: {SEPARATIONS} separations, \
-                 nominal stage)"
+                 nominal stage){hollow}"
             ),
             picture: Picture::Ranges(RangeGrid::new(title, names, panels.into())),
         })
