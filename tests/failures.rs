@@ -140,7 +140,9 @@ fn recontact_is_an_outcome() {
     let p01 = told["p01_m"].as_f64().unwrap();
     assert!(clearance.iter().filter(|c| **c < p01).count() <= clearance.len() / 100 + 1);
     let report = fs::read_to_string(study.folder().join("report.html")).unwrap();
-    assert!(report.contains("They come as near as") && report.contains("figures/clearance.svg"));
+    assert!(
+        report.contains("The smallest clearance is") && report.contains("figures/clearance.svg")
+    );
     let replay = Replay::open(study.folder(), None, nearest.run(), 2.0).unwrap();
     let words = replay.to_string();
     assert!(words.contains("payload 1 (points) and stage 1 (hull)"), "{words}");

@@ -112,7 +112,7 @@ fn page(few: &Value, many: &Value) -> String {
     for (few, many) in claims(few).iter().zip(claims(many)) {
         assert_eq!(few["claim"], many["claim"]);
         let verdict = |claim: &Value| match claim["verdict"].as_str().unwrap() {
-            "not_tested" => "cannot tell".to_owned(),
+            "not_tested" => "undecided".to_owned(),
             other => other.replace('_', " "),
         };
         let claim = few["claim"].as_str().unwrap();
@@ -158,7 +158,7 @@ stage's row comes out under no reading that was tried. Figures 5 and 8 are `figu
 ";
 
 const CLAIMS: &str = "\
-What counts as “considerably more” and the like is in the report. The verdicts are the same with both numbers of runs, but for what the paper's number of runs cannot tell.
+What counts as “considerably more” and the like is in the report. The verdicts are the same with both numbers of runs, but for claims that the paper's number of runs leaves undecided.
 ";
 
 const SEED: &str = "

@@ -13,7 +13,7 @@ pub(crate) enum Verdict {
     HoldsInPart,
     /// It does not.
     DoesNotHold,
-    /// These runs cannot tell.
+    /// More runs are needed.
     NotTested,
 }
 
@@ -24,7 +24,7 @@ impl Verdict {
             Self::Holds => "holds",
             Self::HoldsInPart => "holds in part",
             Self::DoesNotHold => "does not hold",
-            Self::NotTested => "cannot tell",
+            Self::NotTested => "undecided",
         }
     }
 

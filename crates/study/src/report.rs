@@ -145,7 +145,7 @@ fn number(x: Option<f64>, digits: usize, interval: String) -> Text {
     Text::from(optional(x, digits)).tip(interval)
 }
 
-/// How the bodies part, a quantity a row.
+/// How the bodies separate, a quantity a row.
 fn parting(scenario: &Scenario, summary: &Summary) -> Section {
     let said = |of: Option<&Unit<Vector3<f64>>>| match of {
         Some(of) => direction((*of.as_ref()).into()),
@@ -184,10 +184,14 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Section {
     let releases: Vec<Text> = summary.models.iter().filter_map(releases).collect();
     let springs =
         (!releases.is_empty()).then(|| Section::new("Springs and contact").list(releases));
-    Section::new("How they part").paragraph(reading).table(table).sections(springs)
+    let section = Section::new("Separation");
+    if parting.is_empty() {
+        return section.paragraph("No run has an outcome: every run failed.");
+    }
+    section.paragraph(reading).table(table).sections(springs)
 }
 
-/// How the springs of a model let go, and what comes of it; none if no run succeeds.
+/// In which order the springs of a model are released, and what comes of it; none if no run succeeds.
 fn releases(model: &ModelSummary) -> Option<Text> {
     let releases = &model.releases;
     let pressed = releases.recompressed?;
@@ -197,11 +201,13 @@ fn releases(model: &ModelSummary) -> Option<Text> {
         text = text.plain(if i > 0 { "; " } else { "" });
         text = match &*order.order {
             "" => text.plain("no spring pushed"),
-            order => text.plain(if i > 0 { "" } else { "let go in the order " }).code(order),
+            order => text
+                .plain(if i > 0 { "in the order " } else { "the springs released in the order " })
+                .code(order),
         };
         text = text.plain(runs);
     }
-    let others = if releases.orders.len() > 3 { "; others" } else { "" };
+    let others = if releases.orders.len() > 3 { "; other orders in the rest" } else { "" };
     text = text.plain(format!("{others}. {}", energy(model)));
     if let Some(clearance) = &releases.clearance {
         text = text.plain(format!(" {}", nearest(clearance)));
@@ -222,7 +228,7 @@ fn releases(model: &ModelSummary) -> Option<Text> {
 fn nearest(clearance: &ClearanceSummary) -> String {
     let mut text = match (clearance.least_m, clearance.run) {
         (Some(least), Some(run)) => {
-            format!("They come as near as {} m (run {run})", significant(least, 4))
+            format!("The smallest clearance is {} m (run {run})", significant(least, 4))
         }
         _ => "No run has a clearance".to_owned(),
     };
@@ -267,7 +273,7 @@ fn claims(summary: &Summary) -> Section {
          least {} %, “the same” as within {} %, “one-sided” as a skewness beyond {}. That something happens is refuted if it surely happens in \
          less than {} % of the runs. A claim holds in a \
          comparison if the whole interval is on its side of that line, and does not if the whole interval is on \
-         the other; else these runs cannot tell. What holds in one comparison and not, or not surely, in another \
+         the other; otherwise it is undecided, and more runs are needed. What holds in one comparison and not, or not surely, in another \
          holds in part.",
         100.0 * (CONSIDERABLE - 1.0),
         100.0 * LESS,
@@ -482,6 +488,6 @@ pub(crate) fn inputs(scenario: &impl Subject, head: &Head, sketch: Option<Drawin
         .plain(".")
         .plain(some);
     let text = Section::folded("scenario.toml").file("toml", toml);
-    let section = Section::new("What went in").figures(sketch);
+    let section = Section::new("Inputs").figures(sketch);
     section.paragraph(origin).paragraph(files).sections([text])
 }

@@ -54,7 +54,7 @@ impl ModelComparison {
             .section(reading(s.reference_meaning))
             .section(Section::new("Figures").figures(self.figures().iter().map(Figure::drawn)))
             .sections(self.bodies.iter().map(of_body))
-            .section(Section::new("What went in").paragraph(origin))
+            .section(Section::new("Inputs").paragraph(origin))
     }
 }
 

@@ -301,7 +301,7 @@ fn no_number_has_hundreds_of_digits() {
         let study = scenario.study(&Options::to(out.clone()), &|_| {}, &|_| {}).unwrap();
         let page = fs::read_to_string(out.join("report.md")).unwrap();
         // The scenario stands last, as TOML writes it.
-        let (page, _) = page.split_once("## What went in").unwrap();
+        let (page, _) = page.split_once("## Inputs").unwrap();
         let mut said = vec![study.summary().to_string(), page.to_owned()];
         said.extend(
             study.summary().head.requirements.iter().map(|judged| judged.judgement.to_string()),
