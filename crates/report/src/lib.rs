@@ -44,6 +44,7 @@ mod kinds;
 mod legend;
 mod lines;
 mod markdown;
+mod naming;
 mod numbers;
 mod overview;
 mod page;
@@ -72,6 +73,7 @@ pub use histogram::HistogramGrid;
 pub use inline::{Text, Tone};
 pub use kinds::most_frequent;
 pub use lines::{Line, LineGrid, LinePanel, LinePoint, Range};
+pub use naming::first_names;
 pub use numbers::{
     below_hundred, direction, estimate, interval, optional, resolved, round_below, significant,
     with_unit,
@@ -80,7 +82,7 @@ pub use overview::{Overview, spread};
 pub use page::page;
 pub use ranges::{Label, RangeGrid, RangePanel};
 pub use samples::{Panel, Series};
-pub use share::percent;
+pub use share::{of_some, percent};
 pub use sketch::{SketchBody, SketchShape, SketchView, sketch_figure};
 pub use sphere::{AttitudeSpheres, Cloud};
 pub use table::{PageCell, PageTable, TableOf};

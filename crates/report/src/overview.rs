@@ -7,8 +7,9 @@ use serde::{Deserialize, Serialize};
 use crate::{
     Document, Figure, HistogramGrid, PageCell, PageTable, Panel, Picture, Section, Series, Text,
     kinds::most_frequent,
+    naming::first_names,
     numbers::{interval, optional, resolved, with_unit},
-    share::percent,
+    share::{of_some, percent},
 };
 
 /// Panels in a figure at most, five rows: as many as a sheet of paper has room for.
@@ -17,6 +18,8 @@ const PANELS: usize = 15;
 const FIGURES: usize = 20;
 /// The name of the first figure, behind which others have a number.
 const FIGURE: &str = "quantities";
+/// Quantities that are named of those that do not vary.
+const NAMED: usize = 12;
 
 /// What the runs of a simulation under one or several models amount to: every number that its page shows.
 ///
@@ -117,8 +120,8 @@ impl Overview {
 
     /// Of each model its name, how many of its runs failed, and how many there are.
     pub fn failed(&self) -> impl Iterator<Item = (&str, u64, u64)> {
-        let count = |model: &Model| model.failed.map_or(0, |failed| failed.count);
-        self.models.iter().map(move |model| (model.name.as_str(), count(model), model.runs))
+        let failed = |model: &Model| model.runs - model.succeeded();
+        self.models.iter().map(move |model| (model.name.as_str(), failed(model), model.runs))
     }
 
     /// Of each model its name, and the kinds of failure with how often.
@@ -148,6 +151,31 @@ impl Overview {
         self.warning_of([]).led_by(sections)
     }
 
+    /// Of which quantities there is nothing to draw, and why.
+    fn constants(&self) -> impl Iterator<Item = String> {
+        let [mut constant, mut infinite, mut without]: [Vec<String>; 3] = Default::default();
+        for quantity in self.quantities.iter().filter(|quantity| !quantity.varies()) {
+            let mut known = quantity.samples.iter().filter(|sample| sample.n > 0).peekable();
+            let names = match (known.peek().is_some(), known.all(|sample| sample.minimum.is_some()))
+            {
+                (false, _) => &mut without,
+                (true, true) => &mut constant,
+                (true, false) => &mut infinite,
+            };
+            names.push(quantity.column.clone());
+        }
+        let told = [
+            ("have the same value in all runs of each model", constant),
+            ("have a value that is not finite", infinite),
+            ("have no value in any run", without),
+        ];
+        let told = told.into_iter().filter(|(_, names)| !names.is_empty());
+        told.map(|(why, names)| {
+            let names = first_names(names, NAMED);
+            format!("There is no figure of the following, which {why}: {names}.")
+        })
+    }
+
     fn warning_of(&self, warnings: impl IntoIterator<Item = Text>) -> Document {
         let mut lead = Text::default();
         for (i, model) in self.models.iter().enumerate() {
@@ -162,7 +190,8 @@ impl Overview {
             PageCell::from(name).line(Text::default().quiet(&q.meaning))
         });
         for (i, model) in self.models.iter().enumerate() {
-            table = table.numbers(model.name.as_str(), |q| spread(q.samples.get(i)));
+            table =
+                table.numbers(model.name.as_str(), |q| spread(q.samples.get(i), model.succeeded()));
         }
         let others: Vec<&str> =
             differing(&self.quantities).skip(FIGURES * PANELS).map(|q| q.column.as_str()).collect();
@@ -182,6 +211,7 @@ impl Overview {
             .table(table);
         let results = left_out
             .into_iter()
+            .chain(self.constants())
             .fold(results, Section::paragraph)
             .figures(self.figures.iter().map(Figure::drawn));
         Document::new(&self.title, &self.title, lead).section(results)
@@ -202,11 +232,21 @@ impl Model {
         let failed = if runs == 0 { None } else { Some(share()?) };
         Ok(Self { name: name.to_owned(), runs, failed, failures })
     }
+
+    /// Runs that did not fail.
+    fn succeeded(&self) -> u64 {
+        self.runs.saturating_sub(self.failed.map_or(0, |failed| failed.count))
+    }
 }
 
 impl Quantity {
     fn label(&self) -> String {
         with_unit(&self.column, &self.unit)
+    }
+
+    /// Whether the runs of a model differ in it.
+    fn varies(&self) -> bool {
+        self.samples.iter().any(|sample| sample.minimum < sample.maximum)
     }
 }
 
@@ -228,10 +268,7 @@ fn quantities(columns: &[Column], samples: impl Fn(&str) -> Vec<SampleSummary>) 
 
 /// Every number whose runs differ.
 fn differing(quantities: &[Quantity]) -> impl Iterator<Item = &Quantity> {
-    let differ = |quantity: &&Quantity| {
-        quantity.samples.iter().any(|sample| sample.minimum < sample.maximum)
-    };
-    quantities.iter().filter(differ)
+    quantities.iter().filter(|quantity| quantity.varies())
 }
 
 /// Those that have a panel.
@@ -283,15 +320,18 @@ fn failures(model: &Model) -> Option<Text> {
 }
 
 /// Mean ± standard deviation, and below it the range from the 5th to the 95th percentile; the intervals of mean,
-/// deviation and 95th percentile are told where the pointer rests on them.
+/// deviation and 95th percentile are told where the pointer rests on them. Of how many of so many runs they are is said where
+/// others have no value.
 #[must_use]
-pub fn spread(sample: Option<&SampleSummary>) -> PageCell {
+pub fn spread(sample: Option<&SampleSummary>, runs: u64) -> PageCell {
     let Some(s) = sample.filter(|s| s.n > 0) else { return PageCell::from("–") };
     let told = |x| resolved(x, s.deviation, 4);
     let line = Text::from(told(s.mean)).tip(interval(s.mean_interval, 4)).plain(" ± ");
     let line = line.plain(optional(s.deviation, 3)).tip(interval(s.deviation_interval, 4));
     let range = format!("{} … {}", told(s.p05), told(s.p95));
-    PageCell::from(line).line(Text::default().quiet(range).tip(interval(s.p95_interval, 4)))
+    PageCell::from(line)
+        .line(Text::default().quiet(range).tip(interval(s.p95_interval, 4)))
+        .noting(of_some(s.n, runs))
 }
 
 #[cfg(test)]
@@ -357,6 +397,9 @@ mod tests {
                 )),
             };
             assert!(said, "{numbers}: {page}");
+            // The first is always zero.
+            let same = "which have the same value in all runs of each model: x0x.";
+            assert!(page.contains(same), "{numbers}: {page}");
         }
     }
 
@@ -394,6 +437,29 @@ mod tests {
             prop_assert!(!page.contains("<model &") && page.contains("&lt;model &amp; 0&gt;"));
             let failed = runs.iter().filter(|run| run.2).count();
             prop_assert_eq!(page.contains("of the runs failed"), failed > 0);
+            // Of how many runs the statistics are is said where not all have a value.
+            let succeeded = runs.iter().filter(|run| !run.2).count();
+            // What was drawn is there in runs that failed, too.
+            let counts = [
+                runs.iter().filter(|run| run.0.is_some()).count(),
+                runs.iter().filter(|run| run.1.is_some()).count(),
+            ];
+            for n in 1..=succeeded {
+                let said = page.matches(&format!(">of {n} of {succeeded} runs<")).count();
+                let some = counts.iter().filter(|count| **count == n && n < succeeded).count();
+                prop_assert_eq!(said, models * some, "{}", page);
+            }
+            // Each number varies, or is named as one that there is no figure of.
+            for name in ["x_<m>", "y"] {
+                let quantity = read.quantities.iter().find(|quantity| quantity.column == name).unwrap();
+                let escaped = name.replace('<', "&lt;").replace('>', "&gt;");
+                let named = page.split("There is no figure of").skip(1);
+                let mut named = named.filter_map(|text| text.split("</p>").next()?.split(": ").last());
+                let is_named = named.any(|names| {
+                    names.trim_end_matches('.').split(", ").any(|other| other == escaped)
+                });
+                prop_assert_eq!(is_named, !quantity.varies(), "{}", name);
+            }
         }
     }
 }

@@ -20,6 +20,12 @@ pub fn percent(share: &Share) -> String {
     format!("{} % [{}, {}]", number(100.0 * share.share), number(lower), number(upper))
 }
 
+/// Of how many runs a number is, where not all of the runs that did not fail have one: `of 8 of 5000 runs`.
+#[must_use]
+pub fn of_some(n: u64, runs: u64) -> Option<String> {
+    (n < runs).then(|| format!("of {n} of {runs} runs"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -56,6 +56,12 @@ impl PageCell {
         self
     }
 
+    /// With a line that stands back, if there is one.
+    #[must_use]
+    pub fn noting(self, words: Option<String>) -> Self {
+        words.into_iter().fold(self, |cell, words| cell.line(Text::default().quiet(words)))
+    }
+
     pub(crate) fn lines(&self) -> &[Text] {
         &self.0
     }

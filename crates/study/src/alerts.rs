@@ -1,4 +1,4 @@
-//! What a reader should know before the results: only what is so.
+//! What a reader should know before relying on the results: only what is so.
 
 use gyradius_campaign::{SampleSummary, Surveys, Table};
 use gyradius_report::{Section, Text, direction, most_frequent, significant};
@@ -6,9 +6,10 @@ use gyradius_separation::MovingBody;
 use gyradius_statistics::Survey;
 use nalgebra::{Unit, Vector3};
 use serde::{Deserialize, Serialize};
+use std::mem::discriminant;
 
 use crate::{
-    Fleet, folded::FoldedRoot, naming::first_names, rounding::Rounding, unmatched::UnmatchedLaw,
+    Fleet, folded::FoldedRoot, rounding::Rounding, scenario::Dispersed, unmatched::UnmatchedLaw,
 };
 
 /// A kurtosis above which tails are heavy: intervals of standard deviations then cover less often than they say.
@@ -22,10 +23,8 @@ const MANY: f64 = 0.001;
 const FAR: f64 = 10.0 * (1.0 - 1e-6);
 /// Degrees between the angular momentum at the start and the spin axis: from here on, another principal axis may be nearer.
 const OFF_AXIS_DEG: f64 = 45.0;
-/// Outcomes with heavy tails that are named.
-const NAMED: usize = 4;
 
-/// What a reader should know before the results. Each is told only if it is so.
+/// What a reader should know before relying on the results. Each is told only if it is so.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "alert")]
 pub(crate) enum Alert {
@@ -49,6 +48,17 @@ pub(crate) enum Alert {
         /// Whether there is one vehicle, for which what vehicles differ in is drawn once.
         #[serde(default)]
         one_vehicle: bool,
+        /// The probability of what is dispersed, if it is an event.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        probability: Option<f64>,
+    },
+    /// Less than half of the runs have a value of outcomes.
+    FewValues {
+        model: String,
+        /// Labels of outcomes, with how many runs have a value.
+        outcomes: Vec<(String, u64)>,
+        /// Runs that did not fail.
+        runs: u64,
     },
     /// In runs the payload leaves by more than 90° away from where it is to go.
     Backwards {
@@ -97,18 +107,39 @@ impl Alert {
         (model == of).then(|| format!("the first, run {run}: {why}"))
     }
 
-    /// That a column which is declared as dispersed is the same in all of several runs, of these vehicles if there are any.
-    pub(crate) fn unmoved(
+    /// That what is declared as dispersed is the same in all of several runs, of these vehicles if there are any.
+    pub(crate) fn unmoved<T>(
         model: &str,
-        column: &str,
+        dispersed: &Dispersed<T>,
         survey: &Survey,
         fleet: Option<Fleet>,
     ) -> Option<Self> {
         let (value, runs) = (survey.minimum()?.0, survey.n());
         let is_constant = runs > 1 && survey.maximum()?.0 == value;
-        let (model, column) = (model.to_owned(), column.to_owned());
+        let (model, column) = (model.to_owned(), dispersed.column.clone());
         let one_vehicle = fleet.is_some_and(|fleet| fleet.vehicles() == 1);
-        is_constant.then_some(Self::Unmoved { model, column, value, runs, one_vehicle })
+        let probability = dispersed.law.as_bernoulli();
+        is_constant.then_some(Self::Unmoved {
+            model,
+            column,
+            value,
+            runs,
+            one_vehicle,
+            probability,
+        })
+    }
+
+    /// That less than half of so many runs, which did not fail, have a value of outcomes, given by their labels with how many runs have
+    /// one. Of an outcome that no run has there are no statistics to mistake.
+    pub(crate) fn few_values(
+        model: &str,
+        outcomes: impl IntoIterator<Item = (String, u64)>,
+        runs: u64,
+    ) -> Option<Self> {
+        let few = |(_, n): &(String, u64)| *n > 0 && 2 * *n < runs;
+        let outcomes: Vec<(String, u64)> = outcomes.into_iter().filter(few).collect();
+        let model = model.to_owned();
+        (!outcomes.is_empty()).then_some(Self::FewValues { model, outcomes, runs })
     }
 
     /// That in so many runs, of those in which the bodies part, the payload leaves by more than 90° away from where it is to
@@ -166,8 +197,11 @@ impl Alert {
         })
     }
 
-    fn text(&self) -> Text {
-        match self {
+    /// What is said of it. Alerts of several models or columns that say the same of each are told together, where the first of them stands.
+    fn text(&self, all: &[Self]) -> Option<Text> {
+        let same_kind = |other: &&Self| discriminant(*other) == discriminant(self);
+        let is_first = || all.iter().find(same_kind).is_some_and(|first| std::ptr::eq(first, self));
+        Some(match self {
             Self::Failed { model, failed, runs, kinds, .. } => {
                 let mut kinds = most_frequent(kinds).join("; ");
                 if let Some(first) = self.first_failure(model) {
@@ -179,31 +213,19 @@ impl Alert {
                     .code("status")
                     .plain(" in the run table.")
             }
-            Self::Unmoved { model, column, value, runs, one_vehicle } => {
-                let why = if *one_vehicle {
-                    " There is only one vehicle, so that what is drawn once for each vehicle is the same in all of its flights."
-                } else {
-                    ""
-                };
-                let value = significant(*value, 5);
-                Text::default()
-                    .strong(format!("{model}: a dispersion moved nothing"))
-                    .plain(": ")
-                    .code(column)
-                    .plain(format!(
-                        " is declared as dispersed, and is {value} in all {runs} runs.{why} The results say nothing of what it does.",
-                    ))
-            }
+            Self::Unmoved { .. } => return is_first().then(|| together::unmoved(all)),
+            Self::FewValues { .. } => return is_first().then(|| together::few_values(all)),
             Self::Backwards { model, backwards, runs, outlines } => {
                 let text = Text::default()
                     .strong(format!("{model}: the payload leaves the wrong way in {backwards} of {runs} runs"))
                     .plain(", more than 90° away from the direction that is intended. ");
                 if *outlines {
-                    return text.plain("Below is told in how many runs the outlines of the bodies touch.");
+                    text.plain("Below is told in how many runs the outlines of the bodies touch.")
+                } else {
+                    text.plain("It may have gone through the stage, which no spring hinders: outlines of the bodies, under ")
+                        .code("[clearance]")
+                        .plain(" in the scenario, would tell.")
                 }
-                text.plain("It may have gone through the stage, which no spring hinders: outlines of the bodies, under ")
-                    .code("[clearance]")
-                    .plain(" in the scenario, would tell.")
             }
             Self::OffAxis { angle_deg, spin_axis } => Text::default()
                 .strong("The payload does not spin about its spin axis at the start")
@@ -234,7 +256,7 @@ impl Alert {
                          nominal mass centre off its means."
                     ))
             }
-            Self::HeavyTails { model, outcomes } => heavy_tails(&[(model, outcomes)]),
+            Self::HeavyTails { .. } => return is_first().then(|| together::heavy_tails(all)),
             Self::NearBoundary { model, body, near, drawn, margin } => {
                 let share = significant(100.0 * *near as f64 / *drawn as f64, 3);
                 Text::default()
@@ -250,60 +272,14 @@ impl Alert {
                 Text::default().strong("A model has not the moments that it is matched to").plain(format!("; {law}."))
             }
             Self::Folded(root) => Text::default().strong("A law is folded at zero").plain(format!(": {root}.")),
-        }
+        })
     }
 }
 
-/// Outcomes of a model, by their labels, with their kurtosis.
-type Heavy<'a> = (&'a String, &'a Vec<(String, f64)>);
-
-/// Which outcomes have heavy tails, of all models at once, and what that means.
-fn heavy_tails(models: &[Heavy<'_>]) -> Text {
-    let named = |outcomes: &[(String, f64)]| {
-        let mut heaviest: Vec<&(String, f64)> = outcomes.iter().collect();
-        heaviest.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let said = heaviest
-            .iter()
-            .map(|(label, kurtosis)| format!("{label} ({})", significant(*kurtosis, 3)));
-        first_names(said, NAMED)
-    };
-    let text = match models {
-        [(model, outcomes)] => {
-            let text = Text::default().strong(format!("{model}: heavy tails"));
-            text.plain(format!(" in {}", named(outcomes)))
-        }
-        several => {
-            let told =
-                several.iter().map(|(model, outcomes)| format!(" {model} in {}", named(outcomes)));
-            let text = Text::default().strong("Heavy tails").plain(":");
-            text.plain(told.collect::<Vec<_>>().join(";"))
-        }
-    };
-    text.plain(format!(
-        ": a few runs lie far from all others. In brackets is the kurtosis, 3 for a normal distribution; above {HEAVY}, standard \
-         deviations are less certain than their intervals say."
-    ))
-}
-
-/// What a reader should know first, if there is anything.
+/// What a reader should know before relying on the results, if there is anything.
 pub(crate) fn section(alerts: &[Alert]) -> Option<Section> {
-    let heavy = |alert: &'_ Alert| matches!(alert, Alert::HeavyTails { .. });
-    let heavies = alerts.iter().filter_map(|alert| {
-        if let Alert::HeavyTails { model, outcomes } = alert {
-            Some((model, outcomes))
-        } else {
-            None
-        }
-    });
-    let mut heavies: Vec<Heavy<'_>> = heavies.collect();
-    // Where the first of them stands, all are told.
-    let text = |alert: &Alert| match (heavy(alert), heavies.is_empty()) {
-        (false, _) => Some(alert.text()),
-        (true, true) => None,
-        (true, false) => Some(heavy_tails(&std::mem::take(&mut heavies))),
-    };
-    let texts: Vec<Text> = alerts.iter().filter_map(text).collect();
-    (!alerts.is_empty()).then(|| Section::new("Before you read the results").warnings(texts))
+    let texts: Vec<Text> = alerts.iter().filter_map(|alert| alert.text(alerts)).collect();
+    (!alerts.is_empty()).then(|| Section::new("Before you rely on the results").warnings(texts))
 }
 
 /// How many of the inertias of a body in a run table have a margin below [`NEAR`], and how many there are. The margin is the smallest
@@ -330,5 +306,9 @@ pub(crate) fn near_boundary(table: &Table, entries: &[impl AsRef<str>; 6]) -> [u
     counts
 }
 
+mod together;
+
+#[cfg(test)]
+mod some_runs_tests;
 #[cfg(test)]
 mod tests;

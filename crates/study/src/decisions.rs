@@ -11,7 +11,7 @@ use gyradius_report::{PageCell, PageTable, Section, Text, Tone, significant};
 use gyradius_statistics::Verdict;
 
 use crate::{
-    Ended, Fleet, ScenarioError, StudyError,
+    Ended, Fleet, ScenarioError, StudyError, alerts,
     head::{Head, Judged},
     subject::{Subject, Summarized},
     unit::{in_unit, unit_of},
@@ -175,19 +175,31 @@ pub(crate) fn judged<C: Subject>(
     Ok(())
 }
 
-/// The answers, before everything else, and the runs that come nearest to the limits or are beyond.
+/// The answers before everything else, what a reader should know before relying on them directly behind, and then what they rest on.
 pub(crate) fn sections(scenario: &impl Subject, head: &Head) -> Vec<Section> {
+    let alerts = alerts::section(&head.alerts).into_iter();
     if head.requirements.is_empty() {
         let of = |ended: &Ended| {
             let text = format!("{ended} {}.", ended.until.rule().reason());
             Section::new("What ended the runs").paragraph(text)
         };
-        return head.ended.iter().map(of).collect();
+        return alerts.chain(head.ended.iter().map(of)).collect();
     }
+    let parts = [
+        Some(figures::distributions(scenario, head)),
+        worst(scenario, head),
+        Some(figures::convergence(head)),
+    ];
+    let details = Section::new("The requirements in detail").sections(parts.into_iter().flatten());
+    [answers(scenario, head)].into_iter().chain(alerts).chain([details]).collect()
+}
+
+/// What the runs say of each requirement.
+fn answers(scenario: &impl Subject, head: &Head) -> Section {
     let of_share = PageCell::from("share of the runs that keep it")
         .line(Text::default().quiet("interval with the confidence of the requirement"));
     let unit = |judged: &Judged| unit_of(scenario, judged.judgement.requirement().quantity());
-    let table = PageTable::of(&head.requirements)
+    let mut table = PageTable::of(&head.requirements)
         .words("requirement", |judged| {
             let requirement = judged.judgement.requirement();
             let bound = in_unit(requirement.bound().to_string(), unit(judged).as_deref());
@@ -238,11 +250,24 @@ pub(crate) fn sections(scenario: &impl Subject, head: &Head) -> Vec<Section> {
         .numbers("share to pass 9 times in 10", |judged| {
             judged.judgement.success_to_pass().map_or_else(|| "–".to_owned(), percent_or_more)
         });
+    let of_vehicles = |judged: &Judged| judged.judgement.vehicles();
+    if head.requirements.iter().any(|judged| of_vehicles(judged).is_some()) {
+        let heading = "vehicles that keep it in the required share of their flights";
+        table = table.numbers(heading, |judged| {
+            let Some(of) = of_vehicles(judged) else { return PageCell::from("–") };
+            let interval = of.share_interval.map(|interval| {
+                let (lower, upper) =
+                    (percent_or_less(interval.lower()), percent_or_more(interval.upper()));
+                format!("{lower} … {upper}")
+            });
+            PageCell::from(format!("{} of {}", of.keeping, of.vehicles)).noting(interval)
+        });
+    }
     let rests = "A requirement is met if so few runs fail it that a vehicle which is just not good enough would pass with the \
                  probability 1 − confidence at most (the consumer's risk), and not met if a vehicle which is just good enough \
                  would fail with that probability at most. The bound is an order statistic that the required share of all runs \
                  keeps with the confidence, whatever the distribution (Wilks); the margin is its distance to the limit, also in \
-                 standard deviations σ of the quantity. The last column is the producer's side: in which share of all runs a \
+                 standard deviations σ of the quantity. The share to pass is the producer's side: in which share of all runs a \
                  vehicle must keep the requirement, to pass nine times in ten with as many runs.";
     let mut notes = vec![Text::from(rests)];
     if head.requirements.iter().any(|judged| judged.judgement.runs_without_number() > 0) {
@@ -271,23 +296,12 @@ pub(crate) fn sections(scenario: &impl Subject, head: &Head) -> Vec<Section> {
             "Flights of a vehicle have something in common. Verdicts are of the first flight of each vehicle, which are \
              independent of each other.",
         ));
-        notes.extend(head.requirements.iter().filter_map(|judged| {
-            let name = judged.judgement.requirement().name();
-            Some(Text::from(format!(
-                "{name}, {}: of the vehicles, {}.",
-                judged.model,
-                judged.judgement.vehicles()?
-            )))
-        }));
     }
+    let seen = "See the alerts below, “Before you rely on the results”.";
+    let alerted = (!head.alerts.is_empty()).then_some(seen);
     let section = Section::new("Requirements").table(table);
-    let section = notes.into_iter().fold(section, Section::paragraph);
-    let folded = [
-        Some(figures::distributions(scenario, head)),
-        worst(scenario, head),
-        Some(figures::convergence(head)),
-    ];
-    vec![section.sections(folded.into_iter().flatten())]
+    let section = alerted.into_iter().fold(section, Section::paragraph);
+    notes.into_iter().fold(section, Section::paragraph)
 }
 
 /// Where runs fail the requirements, and with which inputs outcomes rise and fall.

@@ -1,7 +1,7 @@
 //! What happens given each fault of a load, beside the runs without any: from columns of the run table alone.
 
 use gyradius_campaign::{FirstLook, Requirement, SampleSummary, Subset, Surveys, Table};
-use gyradius_report::{PageCell, PageTable, Section, Text, optional};
+use gyradius_report::{PageCell, PageTable, Section, Text, of_some, optional};
 use gyradius_statistics::Confidence;
 use serde::{Deserialize, Serialize};
 use std::sync::{Mutex, PoisonError};
@@ -202,10 +202,9 @@ pub(crate) fn section(models: &[(&str, &[GivenFault])]) -> Option<Section> {
         };
         if rows.iter().any(has) {
             table = table.numbers(quantity.label_with_unit(), |(_, given)| {
-                given
-                    .outcome(quantity)
-                    .filter(|sample| sample.n > 0)
-                    .map_or_else(|| "–".into(), cell)
+                let sample = given.outcome(quantity).filter(|sample| sample.n > 0);
+                let runs = given.runs.saturating_sub(given.failed);
+                sample.map_or_else(|| "–".into(), |s| cell(s).noting(of_some(s.n, runs)))
             });
         }
     }

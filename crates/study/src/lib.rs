@@ -44,7 +44,6 @@ mod groups;
 mod head;
 mod loads;
 mod model;
-mod naming;
 mod off_nominal;
 mod options;
 mod quantity;

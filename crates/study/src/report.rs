@@ -1,16 +1,17 @@
 //! The report of a study: what it says of separations and of the paper.
 
+mod releases;
+
 use gyradius_campaign::{Rows, SampleSummary};
 use gyradius_report::{
     Document, Drawing, Figure, PageCell, PageTable, Section, Text, Tone, direction, file_of,
-    interval, optional, percent, resolved, significant, spread,
+    interval, of_some, optional, percent, resolved, significant, spread,
 };
 use gyradius_statistics::Interval;
 use nalgebra::{Unit, Vector3};
 use rayon::prelude::*;
 
 use crate::{
-    alerts,
     body::{Body, Entry},
     claim::Verdict,
     claims::{CONSIDERABLE, IDENTICAL, LESS, ONE_SIDED, RARE},
@@ -21,7 +22,7 @@ use crate::{
     regions,
     scenario::{Comparison, Each, Scenario},
     subject::Subject,
-    summary::{ClearanceSummary, LateSummary, ModelSummary, Summary},
+    summary::{LateSummary, ModelSummary, Summary},
 };
 
 /// Its pages are called so.
@@ -58,7 +59,6 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
     let document = Document::new(title, "Separation under inertia uncertainty", lead);
     noting_what_is_missing(document, &summary.head)
         .sections(summary.head.about.section())
-        .sections(alerts::section(&summary.head.alerts))
         .sections(decisions::sections(scenario, &summary.head))
         .section(results(scenario, summary))
         .section(parting(scenario, summary))
@@ -96,8 +96,11 @@ fn results(scenario: &Scenario, summary: &Summary) -> Section {
         let heading = q.label_with_unit();
         table = table
             .numbers_of(&heading, "mean", |model| {
-                let of_model = |m: &ModelSummary| sample(m, q).and_then(|s| s.mean);
-                optional(model.map_or_else(|| summary.nominal_value(q), of_model), 4)
+                let Some(model) = model else {
+                    return PageCell::from(optional(summary.nominal_value(q), 4));
+                };
+                let mean = optional(sample(model, q).and_then(|s| s.mean), 4);
+                PageCell::from(mean).noting(of_some_runs(model, q))
             })
             .numbers_of(
                 &heading,
@@ -140,6 +143,12 @@ fn sample(model: &ModelSummary, quantity: Quantity) -> Option<&SampleSummary> {
     model.quantity(quantity).map(|q| &q.sample)
 }
 
+/// Of how many runs of a model the statistics of a quantity are, where not all of those that did not fail have a value.
+fn of_some_runs(model: &ModelSummary, quantity: Quantity) -> Option<String> {
+    let n = sample(model, quantity).map(|sample| sample.n).filter(|n| *n > 0)?;
+    of_some(n, model.succeeded())
+}
+
 /// A number, with its interval where the pointer rests on it.
 fn number(x: Option<f64>, digits: usize, interval: String) -> Text {
     Text::from(optional(x, digits)).tip(interval)
@@ -178,10 +187,10 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Section {
     let parting: Vec<Quantity> = Quantity::parting().into_iter().filter(has).collect();
     let mut table = PageTable::of(&parting).words("quantity", |q| q.label_with_unit());
     for model in &summary.models {
-        table = table.numbers(&model.name, |q| spread(sample(model, *q)));
+        table = table.numbers(&model.name, |q| spread(sample(model, *q), model.succeeded()));
     }
     let table = table.numbers("nominal bodies", |q| optional(summary.nominal_value(*q), 4));
-    let releases: Vec<Text> = summary.models.iter().filter_map(releases).collect();
+    let releases: Vec<Text> = summary.models.iter().filter_map(releases::told).collect();
     let springs =
         (!releases.is_empty()).then(|| Section::new("Springs and contact").list(releases));
     let section = Section::new("Separation");
@@ -189,81 +198,6 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Section {
         return section.paragraph("No run has an outcome: every run failed.");
     }
     section.paragraph(reading).table(table).sections(springs)
-}
-
-/// In which order the springs of a model are released, and what comes of it; none if no run succeeds.
-fn releases(model: &ModelSummary) -> Option<Text> {
-    let releases = &model.releases;
-    let pressed = releases.recompressed?;
-    let mut text = Text::default().strong(&model.name).plain(": ");
-    for (i, order) in releases.orders.iter().take(3).enumerate() {
-        let runs = format!(" in {} of the runs", percent(&order.share));
-        text = text.plain(if i > 0 { "; " } else { "" });
-        text = match &*order.order {
-            "" => text.plain("no spring pushed"),
-            order => text
-                .plain(if i > 0 { "in the order " } else { "the springs released in the order " })
-                .code(order),
-        };
-        text = text.plain(runs);
-    }
-    let others = if releases.orders.len() > 3 { "; other orders in the rest" } else { "" };
-    text = text.plain(format!("{others}. {}", energy(model)));
-    if let Some(clearance) = &releases.clearance {
-        text = text.plain(format!(" {}", nearest(clearance)));
-    }
-    if let Some(touch) = releases.recontact {
-        text = text.plain(format!(" The bodies touch again in {} of the runs.", percent(&touch)));
-    }
-    if pressed.count > 0 {
-        text = text.plain(format!(
-            " A spring was pressed again after its release in {} of the runs.",
-            percent(&pressed)
-        ));
-    }
-    Some(text)
-}
-
-/// How near the bodies come.
-fn nearest(clearance: &ClearanceSummary) -> String {
-    let mut text = match (clearance.least_m, clearance.run) {
-        (Some(least), Some(run)) => {
-            format!("The smallest clearance is {} m (run {run})", significant(least, 4))
-        }
-        _ => "No run has a clearance".to_owned(),
-    };
-    if let Some(p01) = clearance.p01_m {
-        let p01 = format!("; the 1st percentile of the clearances is {} m", significant(p01, 4));
-        let interval = interval(clearance.p01_interval_m, 4);
-        text.push_str(format!("{p01} {interval}").trim_end());
-    }
-    if let Some(p05) = clearance.p05_m {
-        text.push_str(&format!(", and the 5th {} m", significant(p05, 4)));
-    }
-    text.push('.');
-    for (note, count) in &clearance.notes {
-        let runs = if *count == 1 { "run" } else { "runs" };
-        text.push_str(&format!(" In {count} {runs} {note}."));
-    }
-    text
-}
-
-/// Where the energy of the springs goes, on the average.
-fn energy(model: &ModelSummary) -> String {
-    let mean = |q| sample(model, q).and_then(|s| s.mean);
-    let Some(whole) = mean(Quantity::SpringEnergy).filter(|whole| *whole > 0.0) else {
-        return String::new();
-    };
-    let percent = |q| optional(mean(q).map(|part| 100.0 * part / whole), 3);
-    format!(
-        "Of {} J in the springs {} % go into translation and {} % into rotation of the payload, {} % \
-         and {} % of the stage.",
-        significant(whole, 4),
-        percent(Quantity::PayloadTranslation),
-        percent(Quantity::PayloadRotation),
-        percent(Quantity::StageTranslation),
-        percent(Quantity::StageRotation)
-    )
 }
 
 fn claims(summary: &Summary) -> Section {
@@ -307,10 +241,14 @@ fn ratios(summary: &Summary) -> Option<Section> {
     for q in Quantity::behaviour() {
         table = table.numbers(q.label(), |c| {
             let ratio = c.ratio(q);
-            estimate(
+            let cell = estimate(
                 ratio.and_then(|r| r.deviation_ratio),
                 ratio.and_then(|r| r.deviation_ratio_interval),
-            )
+            );
+            [&c.naive, &c.physical].into_iter().fold(cell, |cell, name| {
+                let of_some = summary.model(name).and_then(|model| of_some_runs(model, q));
+                cell.noting(of_some.map(|of_some| format!("{name}: {of_some}")))
+            })
         });
     }
     let section = Section::new("Variation under the naive models").paragraph(

@@ -395,18 +395,20 @@ impl ModelSummary {
         let name = &self.name;
         let failed = Alert::failed(&seen.surveys);
         let unmoved = scenario.dispersions().all().iter().filter_map(|dispersed| {
-            let column = &dispersed.column;
-            Alert::unmoved(name, column, seen.surveys.column(column)?, scenario.fleet())
+            let survey = seen.surveys.column(&dispersed.column)?;
+            Alert::unmoved(name, dispersed, survey, scenario.fleet())
         });
-        let outcomes = self.quantities.iter().filter(|q| q.quantity.is_told());
+        let outcomes = || self.quantities.iter().filter(|q| q.quantity.is_told());
         let heavy =
-            outcomes.map(|q| (q.quantity.label().into_owned(), q.quantity.scale(), &q.sample));
+            outcomes().map(|q| (q.quantity.label().into_owned(), q.quantity.scale(), &q.sample));
         let near = Body::BOTH.map(Body::name).into_iter().zip(seen.near_boundary);
         let near = near.filter_map(|(body, [near, of])| Alert::near_boundary(name, body, near, of));
         let parted = seen.quantity(Quantity::DirectionError).map_or(0, Survey::n);
         let backwards =
             Alert::backwards(name, seen.backwards, parted, scenario.outlines().is_some());
-        let first = failed.into_iter().chain(backwards).chain(unmoved);
+        let told = outcomes().map(|q| (q.quantity.label().into_owned(), q.sample.n));
+        let few = Alert::few_values(name, told, self.succeeded());
+        let first = failed.into_iter().chain(backwards).chain(few).chain(unmoved);
         first.chain(Alert::heavy_tails(name, heavy, Scenario::ROUNDING)).chain(near).collect()
     }
 
@@ -419,6 +421,11 @@ impl ModelSummary {
         let others = self.dispersed.iter();
         let others = others.filter_map(|d| DrawnInput::new(&d.quantity, d.mean, d.deviation));
         entries.chain(others).collect()
+    }
+
+    /// Runs that did not fail.
+    pub(crate) fn succeeded(&self) -> u64 {
+        self.unrealizable.of.saturating_sub(self.failed)
     }
 
     pub(crate) fn quantity(&self, quantity: Quantity) -> Option<&QuantitySummary> {

@@ -9,9 +9,14 @@ use crate::{
 };
 
 /// What is told of every quantity.
-type Told = (&'static str, fn(&QuantitySummary) -> Option<f64>);
-const TOLD: [Told; 3] =
-    [("mean", |q| q.sample.mean), ("sd", |q| q.sample.deviation), ("p95", |q| q.sample.p95)];
+type Told = (&'static str, fn(&QuantitySummary) -> String);
+const TOLD: [Told; 3] = [
+    ("mean", |q| optional(q.sample.mean, 4)),
+    ("sd", |q| optional(q.sample.deviation, 4)),
+    ("p95", |q| optional(q.sample.p95, 4)),
+];
+/// How many runs have a value, which is told where not all of those that did not fail have one.
+const RUNS: Told = ("runs", |q| q.sample.n.to_string());
 
 /// The short table that ends a study on the terminal.
 impl Display for Summary {
@@ -31,7 +36,9 @@ impl Display for Summary {
         }
         writeln!(f)?;
         for (model, share) in self.models.iter().zip(&shares) {
-            for (line, (told, value)) in TOLD.into_iter().enumerate() {
+            let told = || Quantity::behaviour().into_iter().filter_map(|q| model.quantity(q));
+            let runs = told().any(|q| q.sample.n < model.succeeded()).then_some(RUNS);
+            for (line, (told, value)) in TOLD.into_iter().chain(runs).enumerate() {
                 if line == 0 {
                     write!(f, "\n{:width$}  {share:>wide$}", model.name)?;
                 } else {
@@ -39,7 +46,7 @@ impl Display for Summary {
                 }
                 write!(f, "  {told:4}")?;
                 for quantity in Quantity::behaviour() {
-                    let value = optional(model.quantity(quantity).and_then(value), 4);
+                    let value = model.quantity(quantity).map_or_else(|| "–".to_owned(), value);
                     write!(f, " {value:>13}")?;
                 }
                 writeln!(f)?;

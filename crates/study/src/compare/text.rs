@@ -75,7 +75,7 @@ pub(crate) fn kinds(body: &BodyResult) -> Vec<ModelKind> {
     kinds
 }
 
-/// What must be said of a body beside its tables: references and models that there are none of, and
+/// What must be said of a body beside its tables: references and models that there are none of, measures that not all draws have, and
 /// separations that failed.
 pub(crate) fn remarks(body: &BodyResult) -> Vec<String> {
     let mut remarks = Vec::new();
@@ -105,6 +105,22 @@ pub(crate) fn remarks(body: &BodyResult) -> Vec<String> {
             .filter_map(|l| Some((heading(l), l.cell(kind)?.problem.as_deref()?)))
             .collect();
         tell(&format!("no {kind}"), reasons);
+    }
+    for kind in kinds(body) {
+        for measure in Measure::ALL {
+            let some = levels().filter_map(|level| {
+                let spread = level.cell(kind)?.results.as_ref()?.spread(measure)?;
+                let all = spread.n + spread.undefined;
+                (spread.n < all).then(|| format!("{} of {all}{}", spread.n, at(&heading(level))))
+            });
+            let some: Vec<String> = some.collect();
+            if !some.is_empty() {
+                let (what, some) = (measure.label(), some.join(", "));
+                remarks.push(format!(
+                    "{kind}: the quantiles of {what} are of {some}, which alone have a finite one"
+                ));
+            }
+        }
     }
     for kind in kinds(body) {
         let mut why: Vec<&str> = Vec::new();

@@ -2,14 +2,13 @@
 
 use gyradius_report::{
     DrivenOutput, DrivingGroup, PageCell, PageTable, Section, Text, drivers_figure, estimate,
-    with_unit,
+    first_names, with_unit,
 };
 use gyradius_statistics::{Estimate, SobolIndex};
 
 use crate::{
     driven::{Driven, Drivers},
     head::Head,
-    naming::first_names,
 };
 
 /// Outputs in a figure, at most.

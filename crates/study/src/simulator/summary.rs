@@ -4,7 +4,9 @@ use gyradius_campaign::{
     Column, ExternalSimulation, Forecast, Kind, Progress, Runs, SampleSummary, Simulator,
     SimulatorFunction, Surveys, Unasked,
 };
-use gyradius_report::{Document, Overview, file_of, most_frequent, optional, resolved, with_unit};
+use gyradius_report::{
+    Document, Overview, file_of, most_frequent, of_some, optional, resolved, with_unit,
+};
 use rayon::ThreadPool;
 use serde::{Deserialize, Serialize};
 use std::{
@@ -18,7 +20,7 @@ use super::{
 };
 use crate::{
     Notice, Options, ScenarioError, Study, StudyError,
-    alerts::{self, Alert},
+    alerts::Alert,
     carry_out::carry_out,
     decisions, drivers,
     groups::{Drawing, Groups},
@@ -80,17 +82,23 @@ impl SimulatorScenario {
         let name = surveys.model();
         let failed = Alert::failed(surveys).into_iter();
         let unmoved = self.dispersed().all.iter().filter_map(|dispersed| {
-            let column = &dispersed.column;
-            Alert::unmoved(name, column, surveys.column(column)?, self.fleet())
+            let survey = surveys.column(&dispersed.column)?;
+            Alert::unmoved(name, dispersed, survey, self.fleet())
         });
         let is_output = |column: &str| self.outputs().iter().any(|o| o.name() == column);
         let outputs = overview.quantities().filter(|(column, ..)| is_output(column));
-        let heavy = outputs
-            .filter_map(|(column, _, samples)| Some((column.to_owned(), 0.0, samples.get(place)?)));
+        let outputs: Vec<(String, &SampleSummary)> = outputs
+            .filter_map(|(column, _, samples)| Some((column.to_owned(), samples.get(place)?)))
+            .collect();
+        let heavy = outputs.iter().map(|(column, sample)| (column.clone(), 0.0, *sample));
+        let told = outputs.iter().map(|(column, sample)| (column.clone(), sample.n));
+        let (_, failures, runs) = overview.failed().nth(place).unwrap_or_default();
+        let few = Alert::few_values(name, told, runs - failures);
         let near = self.bodies().iter().zip(near).filter_map(|(body, [near, drawn])| {
             Alert::near_boundary(name, &body.name, *near, *drawn)
         });
         failed
+            .chain(few)
             .chain(unmoved)
             .chain(Alert::heavy_tails(name, heavy, Self::ROUNDING))
             .chain(near)
@@ -312,7 +320,6 @@ impl Subject for SimulatorScenario {
 
     fn report(&self, summary: &SimulatorSummary) -> Document {
         let first = summary.head.about.section().into_iter();
-        let first = first.chain(alerts::section(&summary.head.alerts));
         let first = first.chain(decisions::sections(self, &summary.head));
         let driven = drivers::section(&summary.head, &self.main_outcomes());
         let document = summary.overview.document_led_by(first).sections(driven);
@@ -378,7 +385,8 @@ impl fmt::Display for SimulatorSummary {
                 for number in [told(s.mean), optional(s.deviation, 4), told(s.p05), told(s.p95)] {
                     write!(f, " {number:>12}")?;
                 }
-                writeln!(f)?;
+                let of_some = of_some(s.n, runs - failed).map(|of_some| format!("  {of_some}"));
+                writeln!(f, "{}", of_some.unwrap_or_default())?;
             }
         }
         Ok(())

@@ -1,11 +1,12 @@
 //! Where runs fail, as the report tells it.
 
 use gyradius_campaign::share_in_percent;
-use gyradius_report::{PageCell, PageTable, Section, Text, interval, resolved, significant};
+use gyradius_report::{
+    PageCell, PageTable, Section, Text, first_names, interval, resolved, significant,
+};
 use gyradius_statistics::{Confidence, Estimate, Tenth};
 
 use super::{Correlation, Failures, LEAST, OUTCOMES, Pair, RANKED, RUNS, Tenths, WhereRunsFail};
-use crate::naming::first_names;
 
 /// Adjusted p-values below this are shown.
 const SHOWN_BELOW: f64 = 0.01;

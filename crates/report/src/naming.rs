@@ -1,7 +1,8 @@
 //! The first of many names, and how many more there are.
 
 /// The first names, at most so many, and how many others follow.
-pub(crate) fn first_names(names: impl IntoIterator<Item = String>, most: usize) -> String {
+#[must_use]
+pub fn first_names(names: impl IntoIterator<Item = String>, most: usize) -> String {
     let mut names: Vec<String> = names.into_iter().collect();
     let others = names.len().saturating_sub(most);
     names.truncate(most);
