@@ -2,13 +2,20 @@
 
 use nalgebra::{Matrix3, Matrix4, Quaternion, UnitQuaternion, Vector3};
 
-use super::relabel::{Relabeling, Sample};
+use super::{
+    LIKELIER,
+    relabel::{Relabeling, Sample},
+};
 
 /// Rounds after which labels that still change are left as they are.
 const ROUNDS: usize = 200;
 /// Deviations are taken to be no smaller than this share of the largest root, and than this
 /// quaternion: six digits, which is what tables carry.
 pub(super) const FLOOR: f64 = 1e-6;
+
+/// Namings whose nearness or cost differ by less than this, or by this share, differ by rounding: the first of them is taken,
+/// so that the last digits of samples do not decide.
+const TIE: f64 = 1e-9;
 
 /// Samples whose axes are named alike.
 #[derive(Clone, Debug)]
@@ -70,7 +77,7 @@ impl Centre {
         for (i, g) in Relabeling::all().iter().enumerate() {
             let roots = g.order.map(|i| sample.roots[i]);
             let cost = self.cost(roots, &(g.turn * from_mean));
-            if cost < least {
+            if cost < least * (1.0 - TIE) {
                 (best, least) = (i, cost);
             }
         }
@@ -111,18 +118,17 @@ pub(super) fn matched(samples: &[Sample], mean_axes: &UnitQuaternion<f64>) -> Ma
         let near = |s: &Sample| {
             let candidates = Relabeling::all().iter().map(|g| s.relabeled(g));
             let kept = candidates.filter(|s| !ordered || s.roots.is_sorted());
-            kept.max_by(|a, b| {
-                let score = |s: &Sample| s.attitude.coords.dot(&reference.coords).abs();
-                score(a).total_cmp(&score(b))
-            })
-            .unwrap_or(*s)
+            let score = |s: &Sample| s.attitude.coords.dot(&reference.coords).abs();
+            kept.reduce(|best, s| if score(&s) > score(&best) + TIE { s } else { best })
+                .unwrap_or(*s)
         };
         samples.iter().map(near).collect()
     };
     let middle = samples.get(samples.len() / 2);
-    let by_moment = middle.map(|s| nearest(&s.attitude, true));
-    let reference =
-        by_moment.as_ref().map_or(*mean_axes, |s| mean_attitude(s.iter().map(|s| &s.attitude)));
+    // Ordered itself: from another order of its axes, all ways to point them are equally far.
+    let reference = middle.and_then(ordered).map_or(*mean_axes, |middle| {
+        mean_attitude(nearest(&middle.attitude, true).iter().map(|s| &s.attitude))
+    });
     let starts = [
         nearest(&reference, true),
         nearest(mean_axes, false),
@@ -131,11 +137,17 @@ pub(super) fn matched(samples: &[Sample], mean_axes: &UnitQuaternion<f64>) -> Ma
     let mut best: Option<(f64, Matched)> = None;
     for start in starts {
         let (height, matched) = iterate(start);
-        if best.as_ref().is_none_or(|(highest, _)| height > *highest + 1e-6) {
+        if best.as_ref().is_none_or(|(highest, _)| height > *highest + LIKELIER) {
             best = Some((height, matched));
         }
     }
     best.map_or_else(|| iterate(samples.to_vec()).1, |(_, matched)| matched)
+}
+
+/// A sample with its roots in ascending order.
+fn ordered(sample: &Sample) -> Option<Sample> {
+    let mut all = Relabeling::all().iter().map(|g| sample.relabeled(g));
+    all.find(|s| s.roots.is_sorted())
 }
 
 fn iterate(mut samples: Vec<Sample>) -> (f64, Matched) {

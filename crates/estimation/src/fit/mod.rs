@@ -48,6 +48,8 @@ const ROUNDS: usize = 60;
 /// How often they are drawn in vain, before the search ends: at least, and more where more names are in doubt.
 const IN_VAIN: f64 = 2.0;
 const IN_VAIN_IF_ALL: f64 = 10.0;
+/// Laws that are likelier by less than this in the logarithm are as likely, to rounding: the first of them is kept.
+const LIKELIER: f64 = 1e-6;
 /// A turn smaller than this, rad, renames nothing: the least that does is a quarter turn.
 const SAME: f64 = 1e-3;
 
@@ -394,7 +396,7 @@ fn renamed(mut last: Fitted) -> Fitted {
         }
         let Ok(next) = fit(samples) else { break };
         last = next;
-        if best.as_ref().is_none_or(|best| last.height > best.height) {
+        if best.as_ref().is_none_or(|best| last.height > best.height + LIKELIER) {
             best = Some(last.clone());
             in_vain = 0;
         } else {

@@ -1,6 +1,7 @@
 //! Tests of the fit of the paper's model to samples of an inertia.
 
 mod hard_tables;
+mod last_digits;
 mod round_bodies;
 
 use super::*;
