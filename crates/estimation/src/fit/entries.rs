@@ -10,6 +10,7 @@ use super::{
     names::Names,
     relabel::{Relabeling, Sample},
     round::direction,
+    simulated::{self, Simulated},
 };
 use crate::rollup::symmetric::{Matrix6, Six, congruence, mapped};
 
@@ -43,12 +44,7 @@ struct Rows<'a> {
 impl<'a> Rows<'a> {
     fn of(fit: &'a PrincipalFit) -> Self {
         let law = fit.axes.law();
-        // q ⊗ m⁻¹ is linear in q.
-        let back = law.mean().inverse();
-        let turn = Matrix4::from_columns(&[0, 1, 2, 3].map(|i| {
-            let unit = nalgebra::Quaternion::from(Vector4::ith(i, 1.0));
-            (unit * back.into_inner()).coords
-        }));
+        let turn = simulated::from(&law.mean());
         let moments = EntryMoments::of(&fit.law);
         let axes = congruence(law.mean().to_rotation_matrix().matrix());
         let covariance = mapped(&axes, moments.covariance());
@@ -163,6 +159,7 @@ impl PrincipalFit {
     /// of as many draws.
     pub(super) fn entries_p_value<R: Rng + ?Sized>(
         &self,
+        simulated: &Simulated<'_>,
         rng: &mut R,
         tick: &mut dyn FnMut(),
     ) -> Option<(f64, f64)> {
@@ -171,7 +168,7 @@ impl PrincipalFit {
         }
         let rows = Rows::of(self);
         let mut draws = || {
-            let drawn: Vec<Sample> = (0..DRAWS).map(|_| self.draw(rng)).collect();
+            let drawn: Vec<Sample> = (0..DRAWS).map(|_| simulated.draw(rng)).collect();
             let drawn = rows.matrix(drawn.into_iter());
             let mean = drawn.column_mean();
             DMatrix::from_fn(drawn.nrows(), DRAWS, |i, j| drawn[(i, j)] - mean[i])
@@ -248,11 +245,12 @@ mod tests {
         let mut uniform = fit.clone();
         uniform.axes = AxesFit::plain(mean, [f64::INFINITY; 3], AxesFinding::Free);
         uniform.law = PrincipalDispersion::new(fit.law.roots().clone(), uniform.axes.law().clone());
+        let simulated = Simulated::of(&fit);
         for _ in 0..TABLES {
-            let drawn: Vec<Sample> = (0..N).map(|_| fit.draw(&mut rng)).collect();
+            let drawn: Vec<Sample> = (0..N).map(|_| simulated.draw(&mut rng)).collect();
             let mut p_value = |fit: &PrincipalFit| {
                 let fit = PrincipalFit { samples: drawn.clone(), ..fit.clone() };
-                fit.entries_p_value(&mut rng, &mut || {}).unwrap().0
+                fit.entries_p_value(&Simulated::of(&fit), &mut rng, &mut || {}).unwrap().0
             };
             p_values.push(p_value(&fit));
             found += usize::from(p_value(&uniform) < 0.002);

@@ -14,6 +14,7 @@ use super::{
     relabel::Sample,
     root::{RootEstimate, RootFit},
     round::{direction, direction_near},
+    simulated::Simulated,
 };
 
 /// A column that differs from a sum of others by less than this share of its length is that sum: two roots that are equal
@@ -174,10 +175,11 @@ impl PrincipalFit {
             tests.push(FitTest::new(Aspect::Roots, p_value, 0.0));
         }
         let turns = self.turns();
+        let simulated = Simulated::of(self);
         if let Some(observed) = omnibus(&turns) {
             let mut densities = Vec::new();
             let (p_value, least) = bootstrap(observed, n, &mut tick, || {
-                let samples: Vec<Sample> = (0..n).map(|_| self.draw(rng)).collect();
+                let samples: Vec<Sample> = (0..n).map(|_| simulated.draw(rng)).collect();
                 if densities.len() < WORSE * n {
                     densities.extend(self.ln_densities(&samples));
                 }
@@ -197,16 +199,10 @@ impl PrincipalFit {
             let p_value = independence(&roots, &turns, n);
             tests.push(FitTest::new(Aspect::RootsAndAxes, p_value, 0.0));
         }
-        if let Some((p_value, least)) = self.entries_p_value(rng, &mut tick) {
+        if let Some((p_value, least)) = self.entries_p_value(&simulated, rng, &mut tick) {
             tests.push(FitTest::new(Aspect::Entries, p_value, least));
         }
         Assessment::new(tests)
-    }
-
-    /// A draw of the law, named as the law names it.
-    pub(super) fn draw<R: Rng + ?Sized>(&self, rng: &mut R) -> Sample {
-        let roots = self.law.roots().sample(rng).values().map(f64::abs);
-        Sample { roots, attitude: self.law.axes().sample(rng) }
     }
 
     /// How many samples [`assess_with`](Self::assess_with) simulates at most.

@@ -9,6 +9,7 @@ mod notes;
 mod relabel;
 mod root;
 mod round;
+mod simulated;
 #[cfg(test)]
 mod tests;
 mod uniformity;

@@ -178,7 +178,7 @@ fn departures_are_noticed_and_named() {
 }
 
 /// A random attitude.
-fn any_attitude(rng: &mut ChaCha8Rng) -> UnitQuaternion<f64> {
+pub(super) fn any_attitude(rng: &mut ChaCha8Rng) -> UnitQuaternion<f64> {
     UniformAttitude.sample(rng)
 }
 

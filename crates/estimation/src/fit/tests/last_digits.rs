@@ -84,3 +84,28 @@ fn a_table_has_one_fit() {
     assert!(doubtful > 1000, "the test must have something to doubt: {doubtful}");
     assert!(others.is_empty(), "{others:?}");
 }
+
+#[test]
+fn a_table_has_one_verdict() {
+    const TABLES: u64 = 60;
+    let (mut others, mut refused) = (Vec::new(), 0);
+    for seed in 0..TABLES {
+        let [one, rest @ ..] = tables(seed).map(|(_, samples)| {
+            let fit = PrincipalFit::new(&samples).unwrap();
+            fit.assess(&mut ChaCha8Rng::seed_from_u64(1))
+        });
+        refused += usize::from(!one.fits());
+        for other in rest {
+            let pairs = one.tests().iter().zip(other.tests());
+            let is_same = one.tests().len() == other.tests().len()
+                && pairs
+                    .into_iter()
+                    .all(|(a, b)| a.aspect() == b.aspect() && same(a.p_value(), b.p_value(), 1.0));
+            if !is_same {
+                others.push(seed);
+            }
+        }
+    }
+    assert!(refused > 2, "the test must have something to refuse: {refused}");
+    assert!(others.is_empty(), "{others:?}");
+}
