@@ -7,13 +7,13 @@ use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion};
 use super::{
     StatementError,
     scatter::{Body, Scatter},
-    task::{Solution, Task},
+    task::{Asked, Solution, Task},
 };
 
 /// Numbers that differ by less than this share of the largest are equal where frames are compared: far above rounding.
 const EQUAL: f64 = 1e-9;
-/// The last digit of second moments, as shares of the largest, and of quaternions: 2⁻⁴³.
-const LAST_DIGIT: f64 = 1.0 / (1_u64 << 43) as f64;
+/// The last digit of numbers that are told beside one, 2⁻³⁶: far above rounding, and far below what anyone states.
+const LAST_DIGIT: f64 = 1.0 / (1_u64 << 36) as f64;
 
 /// Three axes under other names and with other directions: the new axis i is the old one `order[i]`, times `signs[i]`.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +30,8 @@ struct Renamed {
 pub(super) struct Frame {
     body: Renamed,
     principal: Renamed,
+    /// The largest second moment, kg·m², which is one in this frame.
+    size: f64,
 }
 
 impl Renamed {
@@ -79,6 +81,16 @@ fn whole(x: f64) -> i64 {
     (x / EQUAL).round() as i64
 }
 
+/// A number without the digits that rounding makes: as many digits of any number.
+fn short(x: f64) -> f64 {
+    let power = libm::exp2(libm::log2(x.abs()).floor());
+    if power > 0.0 && power.is_finite() {
+        (x / power / LAST_DIGIT).round() * LAST_DIGIT * power
+    } else {
+        x
+    }
+}
+
 /// Numbers as shares of the largest.
 fn shares(three: [f64; 3]) -> [f64; 3] {
     let largest = three.into_iter().fold(0.0, f64::max);
@@ -89,25 +101,26 @@ impl Frame {
     /// The frame in which what a task depends on, number by number, is larger than in any other. Where that is several, the task
     /// is the same in all of them.
     pub(super) fn of(task: &Task) -> Self {
+        let size = task.body.roots.squared().values().into_iter().fold(f64::MIN_POSITIVE, f64::max);
         let named: Vec<_> = Renamed::orders()
-            .flat_map(|principal| Renamed::orders().map(move |body| Self { body, principal }))
+            .flat_map(|principal| Renamed::orders().map(move |body| Self { body, principal, size }))
             .map(|frame| (frame.unsigned(task), frame))
             .collect();
         let largest = named.iter().map(|(numbers, _)| *numbers).max();
         let named = named.into_iter().filter(|(numbers, _)| Some(*numbers) == largest);
-        let pointed = named.flat_map(|(_, Self { body, principal })| {
+        let pointed = named.flat_map(|(_, Self { body, principal, .. })| {
             principal.pointed().flat_map(move |principal| {
                 let bodies = body.pointed().filter(move |body| body.hand == principal.hand);
-                bodies.map(move |body| Self { body, principal })
+                bodies.map(move |body| Self { body, principal, size })
             })
         });
         let frame = pointed.max_by_key(|frame| frame.rows(&task.body).map(|row| row.map(whole)));
-        frame.unwrap_or(Self { body: Renamed::SAME, principal: Renamed::SAME })
+        frame.unwrap_or(Self { body: Renamed::SAME, principal: Renamed::SAME, size })
     }
 
     /// What a task depends on, in this frame, but for what directions of axes change.
     fn unsigned(&self, task: &Task) -> [[i64; 3]; 7] {
-        let Self { body, principal } = self;
+        let Self { body, principal, .. } = self;
         let [x, y, z] = self.rows(&task.body).map(|row| row.map(|r| r * r));
         let numbers = [
             principal.of(shares(task.body.roots.values())),
@@ -133,26 +146,33 @@ impl Frame {
         self.principal.matrix() * rotation.matrix() * self.body.matrix().transpose()
     }
 
-    /// A task as it is in this frame, of the body without its last digits: a long search makes much of differences that rounding
-    /// alone makes between the frames in which a body is given.
+    /// A task as it is in this frame, the largest second moment being one, without the last digits of all numbers: a long
+    /// search makes much of differences that rounding alone makes between the frames and units in which a body is given.
     pub(super) fn task(&self, task: &Task) -> Result<Task, StatementError> {
-        let Self { body, principal } = self;
-        let digits = |x: f64, size: f64| (x / size / LAST_DIGIT).round() * LAST_DIGIT * size;
-        let k = principal.of(task.body.roots.squared().values());
-        let largest = k.into_iter().fold(0.0, f64::max);
-        let k = k.map(|k| digits(k, largest));
+        let Self { body, principal, size } = self;
+        let digits = |x: f64| (x / LAST_DIGIT).round() * LAST_DIGIT;
+        let k = principal.of(task.body.roots.squared().values()).map(|k| digits(k / size));
         let roots = RootSecondMoments::new(k.map(f64::sqrt))
             .map_err(|e| StatementError::Law { problem: e.to_string() })?;
         let rotation = Rotation3::from_matrix_unchecked(self.rotation(&task.body));
-        let attitude = UnitQuaternion::from_rotation_matrix(&rotation).coords;
-        let attitude = attitude.map(|x| digits(x, 1.0));
+        let attitude = UnitQuaternion::from_rotation_matrix(&rotation).coords.map(digits);
         let attitude = UnitQuaternion::new_normalize(Quaternion::from_vector(attitude));
+        let asked = |asked: Asked, named: &dyn Fn([f64; 3]) -> [f64; 3]| match asked {
+            Asked::Nothing => Asked::Nothing,
+            Asked::Stated(deviations) => {
+                Asked::Stated(named(deviations).map(|deviation| short(deviation / size)))
+            }
+            Asked::Added(variances) => {
+                Asked::Added(named(variances).map(|variance| short(variance / size / size)))
+            }
+        };
         Ok(Task {
             body: Body { attitude, roots },
             trace: 2.0 * k.iter().sum::<f64>(),
-            moments: task.moments.map(|three| body.of(three)),
-            products: task.products.map(|three| self.pairs(three)),
+            moments: asked(task.moments, &|three| body.of(three)),
+            products: asked(task.products, &|three| self.pairs(three)),
             axes: task.axes.map(|three| principal.of(three)),
+            mass: task.mass.map(|(relative, most)| (short(relative), short(most))),
             ..*task
         })
     }
@@ -166,10 +186,10 @@ impl Frame {
         let [i12, i13, i23] = by_axis_left_out(self.body.back(by_axis_left_out([i12, i13, i23])));
         Solution {
             scatter: Scatter {
-                roots: named.tr_mul(&found.scatter.roots) * named,
+                roots: named.tr_mul(&found.scatter.roots) * named * self.size,
                 rotations: turned.tr_mul(&found.scatter.rotations) * turned,
             },
-            with_centre: [i11, i22, i33, i12, i13, i23],
+            with_centre: [i11, i22, i33, i12, i13, i23].map(|it| Some(it? * self.size)),
             ..*found
         }
     }

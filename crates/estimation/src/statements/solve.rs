@@ -123,11 +123,15 @@ impl Unknowns<'_> {
 
     /// Takes the first start that does, or the best of them, if it is better.
     fn improve(&self, best: &mut (Trial, f64), starts: &[Values]) {
+        self.improve_by(Effort::FULL, best, starts);
+    }
+
+    fn improve_by(&self, effort: Effort, best: &mut (Trial, f64), starts: &[Values]) {
         for start in starts {
             if !self.misses(best) {
                 return;
             }
-            let found = self.downhill(*start);
+            let found = self.steps(*start, effort);
             if !self.misses(&found) || found.1 < (1.0 - WORTH) * best.1 {
                 *best = found;
             }
@@ -184,7 +188,7 @@ impl Unknowns<'_> {
         }
         if self.misses(&best) {
             let (nearest, _) = self.nearest(ANYWHERE, WIDE);
-            self.improve(&mut best, &nearest);
+            self.improve_by(Effort::FINE, &mut best, &nearest);
         }
         for _ in 0..AGAIN {
             let before = best.1;
@@ -194,7 +198,25 @@ impl Unknowns<'_> {
                 break;
             }
         }
+        self.refine(&mut best);
         best
+    }
+
+    /// Follows the valley in which the best lies, while that is worth it.
+    fn refine(&self, best: &mut (Trial, f64)) {
+        for _ in 0..AGAIN {
+            if !self.misses(best) {
+                return;
+            }
+            let found = self.steps(best.0.x, Effort::FINE);
+            let is_worth_it = found.1 < (1.0 - WORTH) * best.1;
+            if found.1 < best.1 {
+                *best = found;
+            }
+            if !is_worth_it {
+                return;
+            }
+        }
     }
 
     /// Where some steps lead from points all over the unknowns: the best of them, and the least of their costs.

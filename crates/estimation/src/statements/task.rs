@@ -208,15 +208,6 @@ impl Asked {
         }
     }
 
-    /// The same with other numbers.
-    pub(super) fn map(&self, numbers: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
-        match *self {
-            Self::Nothing => Self::Nothing,
-            Self::Stated(deviations) => Self::Stated(numbers(deviations)),
-            Self::Added(variances) => Self::Added(numbers(variances)),
-        }
-    }
-
     pub(super) fn mean_variance(&self) -> f64 {
         self.variances().iter().sum::<f64>() / 3.0
     }

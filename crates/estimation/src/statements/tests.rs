@@ -12,6 +12,7 @@ use rand_distr::Distribution;
 
 mod planted;
 mod reasons;
+mod sizes;
 mod slender;
 mod still;
 mod turns;
