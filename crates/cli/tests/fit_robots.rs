@@ -183,3 +183,39 @@ fn links_that_are_left_out_are_told_where_the_rest_are_too_few() {
         }
     }
 }
+
+/// What is wrong in one link, which nobody means, is refused by `fit` as it is by `draw`; what is said in another way is left out by both.
+#[test]
+fn slips_in_links_are_refused_as_draw_refuses_them() {
+    let bodies = Bodies::new();
+    let scratch = Scratch::new();
+    let sdf = format!("<sdf version=\"1.9\"><model name=\"m\">{}</model></sdf>", bodies.sdf);
+    let urdf = format!("<robot name=\"r\">{}</robot>", bodies.urdf);
+    let mjcf = format!("<mujoco><worldbody>{}</worldbody></mujoco>", bodies.mjcf);
+    let mut refused = 0;
+    for (name, text, from, to) in [
+        ("a.sdf", &sdf, "<pose>", "<pose rotation_format=\"quat\">"),
+        ("b.sdf", &sdf, "<pose>", "<pose rotation_format=\"quaternion\">"),
+        ("c.sdf", &sdf, "<pose>", "<pose degrees=\"yes\">"),
+        ("d.sdf", &sdf, "<pose>", "<pose degrees=\"false\">"),
+        ("e.sdf", &sdf, "<pose>", "<pose relative_to=\"elsewhere\">"),
+        ("f.sdf", &sdf, "<pose>", "<pose>1 2 3</pose><pose>"),
+        ("g.urdf", &urdf, "rpy=\"", "rpy=\"1 "),
+        ("h.urdf", &urdf, "xyz=\"", "xyz=\"nan "),
+        ("i.urdf", &urdf, " rpy=", " quat_xyzw=\"0 0 0 1\" rpy="),
+        ("j.xml", &mjcf, "quat=\"", "quat=\"1 "),
+        ("k.xml", &mjcf, "quat=", "euler=\"0 0 0\" quat="),
+        ("l.xml", &mjcf, "diaginertia=", "fullinertia=\"1 1 1 0 0 0\" diaginertia="),
+        ("m.xml", &mjcf, "pos=\"", "pos=\"x "),
+    ] {
+        let wrong = text.replacen(from, to, 1);
+        assert_ne!(&wrong, text);
+        fs::write(scratch.path(name), wrong).unwrap();
+        let draw = ["draw", name, "-n", "1", "--mass", "1%", "-o", "drawn.csv", "--force"];
+        let codes = [&["fit", name][..], &draw].map(|said| scratch.run(said).status.code());
+        let [fit, draw] = codes.map(|code| code == Some(2));
+        assert_eq!(fit, draw, "{name}: {to}");
+        refused += usize::from(fit);
+    }
+    assert!((5..13).contains(&refused), "{refused}");
+}

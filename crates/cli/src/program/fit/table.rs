@@ -31,6 +31,8 @@ pub(super) enum TableError {
         "{place}: the row says {label:?}, and one that sums up others is no sample: it must be left out of the table"
     )]
     Summary { place: String, label: String },
+    #[error("{place}: {name}: {problem}")]
+    Link { place: String, name: String, problem: LinkProblem },
     #[error("{place}: {error}")]
     Ten { place: String, error: TenTableError },
     #[error(
@@ -212,6 +214,11 @@ fn of_links(file: InertiaFile, place: &str, form: Option<TenForm>) -> Result<Giv
             }
             Err(LinkProblem::Body(error)) => {
                 return Err(row_error(format!("{place}:{line}"), error));
+            }
+            // As `gyradius draw`: what nobody means is not passed over.
+            Err(problem) if problem.is_a_slip() => {
+                let (place, name) = (format!("{place}:{line}"), link.name().to_owned());
+                return Err(TableError::Link { place, name, problem: problem.clone() });
             }
             Err(problem) => unread.push(format!("line {line}: {}: {problem}", link.name())),
         }
