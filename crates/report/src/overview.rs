@@ -120,8 +120,7 @@ impl Overview {
 
     /// Of each model its name, how many of its runs failed, and how many there are.
     pub fn failed(&self) -> impl Iterator<Item = (&str, u64, u64)> {
-        let failed = |model: &Model| model.runs - model.succeeded();
-        self.models.iter().map(move |model| (model.name.as_str(), failed(model), model.runs))
+        self.models.iter().map(|model| (model.name.as_str(), model.failures(), model.runs))
     }
 
     /// Of each model its name, and the kinds of failure with how often.
@@ -233,9 +232,14 @@ impl Model {
         Ok(Self { name: name.to_owned(), runs, failed, failures })
     }
 
+    /// Runs that failed.
+    fn failures(&self) -> u64 {
+        self.failed.map_or(0, |failed| failed.count)
+    }
+
     /// Runs that did not fail.
     fn succeeded(&self) -> u64 {
-        self.runs.saturating_sub(self.failed.map_or(0, |failed| failed.count))
+        self.runs.saturating_sub(self.failures())
     }
 }
 
