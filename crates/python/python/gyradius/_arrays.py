@@ -106,17 +106,22 @@ def numbers(name: str, value: ArrayLike) -> NDArray[np.float64]:
 def rows(name: str, value: ArrayLike, tail: tuple[int, ...]) -> tuple[NDArray[np.float64], tuple[int, ...]]:
     """An array of shape (..., *tail) as rows, and what the dots stand for."""
     if tail == (10,):
-        named = names_of(value)
-        if named is not None and set(named) == set(_core.COLUMNS) and named != list(_core.COLUMNS):
-            raise ValueError(
-                f"{name}: its columns must be in the order of gyradius.COLUMNS, as in table[list(gyradius.COLUMNS)]"
-            )
+        own_order(name, value)
     array = numbers(name, value)
     if array.shape[array.ndim - len(tail) :] != tail or array.ndim < len(tail):
         wanted = ", ".join(["...", *map(str, tail)])
         raise ValueError(f"{name}: its shape is {array.shape}, and it must be ({wanted})")
     lead = array.shape[: array.ndim - len(tail)]
     return np.ascontiguousarray(array).reshape(-1, int(np.prod(tail))), lead
+
+
+def own_order(name: str, value: ArrayLike) -> None:
+    """Refuses a table of bodies whose columns stand in another order."""
+    named = names_of(value)
+    if named is not None and set(named) == set(_core.COLUMNS) and named != list(_core.COLUMNS):
+        raise ValueError(
+            f"{name}: its columns must be in the order of gyradius.COLUMNS, as in table[list(gyradius.COLUMNS)]"
+        )
 
 
 def names_of(value: Any) -> list[str] | None:

@@ -25,6 +25,7 @@ from gyradius._arrays import (
     ordered,
     out,
     own_numbers,
+    own_order,
     rows,
     together,
 )
@@ -107,9 +108,12 @@ class MassProperties:
     @classmethod
     def of(cls, array: ArrayLike) -> MassProperties:
         """The bodies of an array of shape (..., 10), in the order of `gyradius.COLUMNS`."""
-        flat, lead = rows("array", array, (10,))
+        # An array has no names any more.
+        own_order("array", array)
+        given = own_numbers("array", array)
+        flat, lead = rows("array", given, (10,))
         bodies = flat.copy()
-        if is_single(own_numbers("array", array)):
+        if is_single(given):
             rounded = of_rounded(bodies[:, MATRIX].reshape(-1, 3, 3))
             bodies[:, 4:] = np.stack([rounded[:, i, j] for i, j in ENTRIES], axis=1)
         return cls._of(bodies.reshape(*lead, 10))
