@@ -18,38 +18,27 @@ const TOLD: [Told; 3] = [
 /// How many runs have a value, which is told where not all of those that did not fail have one.
 const RUNS: Told = ("runs", |q| q.sample.n.to_string());
 
+/// One line of the table: a cell of each quantity. The line is 76 characters long, for terminals
+/// of 80; the name of a model therefore has a line of its own.
+fn line(f: &mut Formatter<'_>, head: &str, cell: impl Fn(Quantity) -> String) -> fmt::Result {
+    write!(f, "  {head:4}")?;
+    for quantity in Quantity::behaviour() {
+        write!(f, " {:>13}", cell(quantity))?;
+    }
+    writeln!(f)
+}
+
 /// The short table that ends a study on the terminal.
 impl Display for Summary {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let names = self.models.iter().map(|m| m.name.chars().count());
-        let width = names.max().unwrap_or(0).max("model".len());
-        let shares: Vec<String> = self.models.iter().map(|m| percent(&m.unrealizable)).collect();
-        let wide =
-            shares.iter().map(|s| s.chars().count()).max().unwrap_or(0).max("unrealizable".len());
-        write!(f, "{:width$}  {:>wide$}  {:4}", "model", "unrealizable", "")?;
-        for quantity in Quantity::behaviour() {
-            write!(f, " {:>13}", quantity.label())?;
-        }
-        write!(f, "\n{:width$}  {:>wide$}  {:4}", "", "draws", "")?;
-        for quantity in Quantity::behaviour() {
-            write!(f, " {:>13}", quantity.unit())?;
-        }
-        writeln!(f)?;
-        for (model, share) in self.models.iter().zip(&shares) {
+        line(f, "", |quantity| quantity.label().into_owned())?;
+        line(f, "", |quantity| quantity.unit().to_owned())?;
+        for model in &self.models {
+            writeln!(f, "\n{}, unrealizable draws: {}", model.name, percent(&model.unrealizable))?;
             let told = || Quantity::behaviour().into_iter().filter_map(|q| model.quantity(q));
             let runs = told().any(|q| q.sample.n < model.succeeded()).then_some(RUNS);
-            for (line, (told, value)) in TOLD.into_iter().chain(runs).enumerate() {
-                if line == 0 {
-                    write!(f, "\n{:width$}  {share:>wide$}", model.name)?;
-                } else {
-                    write!(f, "{:width$}  {:wide$}", "", "")?;
-                }
-                write!(f, "  {told:4}")?;
-                for quantity in Quantity::behaviour() {
-                    let value = model.quantity(quantity).map_or_else(|| "–".to_owned(), value);
-                    write!(f, " {value:>13}")?;
-                }
-                writeln!(f)?;
+            for (told, value) in TOLD.into_iter().chain(runs) {
+                line(f, told, |q| model.quantity(q).map_or_else(|| "–".to_owned(), value))?;
             }
         }
         for model in self.models.iter().filter(|m| m.failed > 0) {
