@@ -70,14 +70,20 @@ impl EntryMoments {
         Ok(Self { mean, covariance: *Covariance::new(covariance, 1e304)?.matrix() })
     }
 
-    /// The variance of an entry that arithmetic may leave where the entry does not vary: of the rounding of means, and of a covariance that is turned to
-    /// other axes, where a part of the largest variance is left of the sums.
-    pub(crate) fn rounding(&self) -> f64 {
-        const OF_MEAN: f64 = 64.0 * f64::EPSILON;
-        const OF_VARIANCE: f64 = 512.0 * f64::EPSILON;
+    /// The variances that arithmetic may leave of entries that do not vary. Directions are rounded, which tells in all entries by parts of the largest. And
+    /// sums cancel, of terms K_k n_ki n_kj: for the parts of a direction |n_i n_j| ≤ √((1 − n_i²)(1 − n_j²)), so that Σ_k K_k |n_ki n_kj| ≤ √(I_ii I_jj),
+    /// and what is left is a part of that, times the largest relative deviation: next to nothing in the small moment of a thin body.
+    pub(crate) fn rounding(&self) -> [f64; 6] {
+        const OF_DIRECTIONS: f64 = 64.0 * f64::EPSILON;
+        const OF_SUMS: f64 = 512.0 * f64::EPSILON;
+        // Of moments below it, relative deviations are rounding themselves.
+        const SEEN: f64 = 1e-9;
+        let c = self.covariance.diagonal();
         let size = self.mean.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-        let most = self.covariance.diagonal().max();
-        (OF_MEAN * size).powi(2) + OF_VARIANCE * most
+        let everywhere = OF_DIRECTIONS.powi(2) * (size * size + c.max());
+        let seen = (0..3).filter(|&e| self.mean[e].abs() > SEEN * size);
+        let relative = seen.map(|e| c[e] / self.mean[e] / self.mean[e]).fold(0.0, f64::max);
+        ENTRIES.map(|(i, j)| everywhere + OF_SUMS * relative * (self.mean[i] * self.mean[j]).abs())
     }
 
     pub(crate) fn unchecked(mean: [f64; 6], covariance: SMatrix<f64, 6, 6>) -> Self {

@@ -78,7 +78,7 @@ impl DispersionModel {
 /// The covariance with what is rounding set to zero.
 fn without_rounding(moments: &EntryMoments) -> SMatrix<f64, 6, 6> {
     let (c, rounding) = (moments.covariance(), moments.rounding());
-    let varies = |e: usize| c[(e, e)] > rounding;
+    let varies = |e: usize| c[(e, e)] > rounding[e];
     SMatrix::from_fn(|e, f| if varies(e) && varies(f) { c[(e, f)] } else { 0.0 })
 }
 
@@ -89,8 +89,8 @@ mod tests {
     use crate::second_moment_matrix::inertia_map;
     use crate::{AxesLaw, FixedAttitude, KnownMoments, PrincipalDispersion, RootLaw, ScalarRoots};
     use gyradius_attitude::{RadiallyConstrainedGaussian, UniformAttitude};
-    use gyradius_inertia::Inertia;
-    use nalgebra::{Matrix3, Matrix4};
+    use gyradius_inertia::{Inertia, RootSecondMoments};
+    use nalgebra::{Matrix3, Matrix4, UnitQuaternion};
     use proptest::prelude::*;
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
     use rand_distr::Distribution;
@@ -250,6 +250,30 @@ mod tests {
                 };
                 for (own, asked) in squares(&own).into_iter().zip(squares(&target)) {
                     prop_assert!((own / asked - 1.0).abs() < 1e-4, "{} {}: {:e} {:e}", kind, level, own, asked);
+                }
+            }
+        }
+
+        /// The small moment of a thin body has its deviation, however much larger those of the others are.
+        #[test]
+        fn thin_bodies_keep_their_small_moment(
+            thin in prop::array::uniform2(-7.0..0.0_f64),
+            (size, level) in ((-3.0..6.0_f64).prop_map(libm::exp10), (-6.0..-1.0_f64).prop_map(libm::exp10)),
+            long in 0..3_usize,
+            seed in any::<Option<u64>>(),
+        ) {
+            let mut k = [1.0, libm::exp10(thin[0]), libm::exp10(thin[1])].map(|x| (size * x).sqrt());
+            k.rotate_right(long);
+            let attitude = seed.map_or_else(UnitQuaternion::identity, |seed| {
+                UniformAttitude.sample(&mut ChaCha8Rng::seed_from_u64(seed))
+            });
+            let roots = ScalarRoots::normal(RootSecondMoments::new(k).unwrap(), k.map(|k| (level * k).powi(2))).unwrap();
+            let axes = AxesLaw::Fixed(FixedAttitude::new(attitude));
+            let target = PrincipalDispersion::new(RootLaw::from(roots), axes).entry_moments();
+            for kind in [ModelKind::ENTRYWISE, ModelKind::CORRELATED_ENTRIES] {
+                let own = matched(kind, &target).entry_moments().unwrap();
+                for (own, asked) in own.deviations().into_iter().zip(target.deviations()) {
+                    prop_assert!((own - asked).abs() <= 1e-9 * asked, "{} {:e} {:e}", kind, own, asked);
                 }
             }
         }

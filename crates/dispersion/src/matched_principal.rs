@@ -46,18 +46,19 @@ impl NamedModel for Principal {
 /// Gaussian roots with full covariance about a radially constrained Gaussian of the axes.
 fn principal(body: &Inertia, moments: &EntryMoments) -> Result<Principal, NoMatch> {
     const STEPS: usize = 12;
-    let (mean, covariance, rounding) = (moments.mean(), moments.covariance(), moments.rounding());
+    let (mean, covariance) = (moments.mean(), moments.covariance());
     let axes = body.principal_axes();
     let to_principal = turn(&axes);
     let target_mean = to_principal * SVector::<f64, 6>::from(mean);
     let target = to_principal * covariance * to_principal.transpose();
+    let rounding = rounding_of_products(&to_principal, moments);
     // What the first-order law is asked for, corrected by what comes out.
     let mut asked_mean: [f64; 3] = [target_mean[0], target_mean[1], target_mean[2]];
     let mut asked_moments: Matrix3<f64> = target.fixed_view::<3, 3>(0, 0).into();
     let mut asked_products: Matrix3<f64> = target.fixed_view::<3, 3>(3, 3).into();
     let mut best: Option<(f64, Principal)> = None;
     for _ in 0..STEPS {
-        let law = first_order(&axes, asked_mean, &asked_moments, (&asked_products, rounding));
+        let law = first_order(&axes, asked_mean, &asked_moments, (&asked_products, &rounding));
         let law = match (law, &best) {
             (Ok(law), _) => law,
             (Err(_), Some(_)) => break,
@@ -86,12 +87,12 @@ fn principal(body: &Inertia, moments: &EntryMoments) -> Result<Principal, NoMatc
     best.map(|(_, law)| law).ok_or_else(|| "no law was found".into())
 }
 
-/// Roots with the moments' covariance; axes that turn as the products ask for, of which this variance is rounding.
+/// Roots with the moments' covariance; axes that turn as the products ask for, of whose variances these are rounding.
 fn first_order(
     axes: &PrincipalAxes,
     [i1, i2, i3]: [f64; 3],
     moments: &Matrix3<f64>,
-    (products, rounding): (&Matrix3<f64>, f64),
+    (products, rounding): (&Matrix3<f64>, &[f64; 3]),
 ) -> Result<Principal, NoMatch> {
     // K = ½ (ΣI)·1 − I.
     let map = Matrix3::new(-0.5, 0.5, 0.5, 0.5, -0.5, 0.5, 0.5, 0.5, -0.5);
@@ -134,7 +135,7 @@ fn first_order(
             }
         }
         let deviation = turns[(2 - a, 2 - a)].max(0.0).sqrt();
-        let varies = products[(a, a)] > rounding;
+        let varies = products[(a, a)] > rounding[a];
         if deviation > MAX_TURN || (varies && deviation == 0.0) {
             return Err(format!(
                 "{} varies by {:.3e} kg·m² in principal axes: no small turn of the axes does that, for \
@@ -156,6 +157,15 @@ fn first_order(
     let axes =
         RadiallyConstrainedGaussian::from_rotation_covariance(axes.attitude(), turns, RADIAL)?;
     Ok(PrincipalDispersion::new(roots.into(), axes.into()))
+}
+
+/// The variances that arithmetic may leave of products in principal axes: of those in body axes, and of the sums of the turn.
+fn rounding_of_products(turn: &SMatrix<f64, 6, 6>, moments: &EntryMoments) -> [f64; 3] {
+    const OF_SUMS: f64 = 512.0 * f64::EPSILON;
+    let own = SVector::<f64, 6>::from(moments.rounding().map(f64::sqrt));
+    let turn = turn.abs();
+    let (own, sums) = (turn * own, turn * moments.covariance().abs() * turn.transpose());
+    [3, 4, 5].map(|e| own[e] * own[e] + OF_SUMS * sums[(e, e)])
 }
 
 /// The linear map from the six entries in body axes to those in principal axes.
