@@ -19,6 +19,7 @@ use crate::program::{
         REPORT_EXAMPLES, ROLLUP_EXAMPLES, SLURM_EXAMPLES, STATUS_EXAMPLES, VERDICT_EXAMPLES,
     },
     scheduler::AskedShard,
+    share::share,
     stated::{ROBOTS, StatedArgs},
 };
 
@@ -843,18 +844,6 @@ fn level(text: &str) -> Result<f64, String> {
 /// A number of threads, as any whole number; how many there may be is asked where they are made.
 fn threads(text: &str) -> Result<usize, String> {
     whole(text).map(|number| usize::try_from(number).unwrap_or(usize::MAX))
-}
-
-/// A share: 0.05 or 5%.
-fn share(text: &str) -> Result<f64, String> {
-    let value = match text.strip_suffix('%') {
-        Some(percent) => percent.trim_end().parse::<f64>().map(|x| x / 100.0),
-        None => text.parse(),
-    };
-    match value {
-        Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
-        _ => Err("it must lie between 0 and 1, or between 0% and 100%".to_owned()),
-    }
 }
 
 /// The forms of tables, by their names.

@@ -18,6 +18,7 @@ mod replay;
 mod report;
 mod rollup;
 mod scheduler;
+mod share;
 mod shell;
 mod signals;
 mod slurm;

@@ -13,6 +13,7 @@ use crate::program::{
     output::{complain, print, print_json, say},
     progress,
     scheduler::AskedShard,
+    share::exceeds,
     signals::Signals,
 };
 
@@ -95,7 +96,7 @@ pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
         }
     }
     for (model, failed, runs) in outcome.failed() {
-        if failed as f64 > arguments.max_failed * runs as f64 {
+        if exceeds(failed, runs, arguments.max_failed) {
             complain(format_args!(
                 "{model}: {failed} of {runs} runs failed, and --max-failed allows {} %",
                 short(100.0 * arguments.max_failed)
