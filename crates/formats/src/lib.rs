@@ -65,6 +65,7 @@ mod sdf_words;
 mod spread;
 mod summary_row;
 mod table_header;
+mod table_terms;
 mod ten_heading;
 mod ten_moments;
 mod ten_table;

@@ -9,7 +9,8 @@ use crate::{
     product_heading::is_unread_product,
     rows::{Field, Rows, headers, without_marks},
     spread,
-    ten_heading::TenHeading,
+    table_terms::{InertiaPoint, TableTerms},
+    ten_heading::{TenCentre, TenHeading},
     text::Text,
     units::{BadUnit, Dimension, SharedUnit, Unit, UnitProblem, longest_name, squeezed},
 };
@@ -82,6 +83,8 @@ pub(crate) struct Header {
     pub(crate) units: Option<Vec<Field>>,
     /// Columns that would change the inertia of a row, and are not read.
     unread: Vec<(usize, Unread)>,
+    /// What holds for all rows.
+    terms: TableTerms,
 }
 
 impl Header {
@@ -94,7 +97,7 @@ impl Header {
             let is_thing = *what == Unread::Unit
                 && ["unit", "units"].contains(&squeezed(heading).as_str())
                 && !Unit::is_named(cell);
-            if is_thing { None } else { what.problem(heading, cell) }
+            if is_thing { None } else { what.problem(heading, cell, &self.terms) }
         })
     }
 }
@@ -233,10 +236,27 @@ fn header(text: &Text, row: &[Field], below: Option<&[Field]>) -> Result<Option<
     let inertia_kg_m2 = of_inertia.si();
     let is_read = |at: usize| columns.contains(&Some(at));
     let others = row.iter().enumerate().filter(|(at, _)| !is_read(*at));
-    let unread =
-        others.filter_map(|(at, field)| Some((at, would_change(field.of(text.as_str()))?)));
+    let others = others.map(|(at, field)| (at, field.of(text.as_str())));
+    let unread = others.clone().filter_map(|(at, heading)| Some((at, would_change(heading)?)));
     let unread = unread.collect();
-    Ok(Some(Header { row: row.to_vec(), columns, mass_kg, inertia_kg_m2, units, unread }))
+    let has_mass = columns[MASS].is_some();
+    let point =
+        if has_mass { point(others.map(|(_, heading)| heading)) } else { InertiaPoint::MassCentre };
+    let terms = TableTerms { point };
+    Ok(Some(Header { row: row.to_vec(), columns, mass_kg, inertia_kg_m2, units, unread, terms }))
+}
+
+/// What the inertia is about in a table with a mass, by its other columns: by three first moments and no mass centre it is the origin.
+fn point<'a>(headings: impl Iterator<Item = &'a str>) -> InertiaPoint {
+    let mut has_moment = [false; 10];
+    for heading in headings.filter_map(TenHeading::of).filter(|heading| heading.unit.is_ok()) {
+        match heading.centre {
+            Some(TenCentre::MassCentre) => return InertiaPoint::MassCentre,
+            Some(TenCentre::FirstMoments) => has_moment[heading.place] = true,
+            None => {}
+        }
+    }
+    if has_moment[1..4] == [true; 3] { InertiaPoint::Origin } else { InertiaPoint::MassCentre }
 }
 
 /// Why a row is no header, where it would be one if what follows the names of the moments were units.

@@ -1,6 +1,6 @@
 //! Columns that say that the inertia of a row is another one: whoever reads the table refuses them, or reads the same numbers.
 
-use gyradius_formats::{FileBodyError, InertiaFile, PartsTable, Products, TenTable};
+use gyradius_formats::{FileBodyError, InertiaFile, PartsTable, Products, TenCentre, TenTable};
 use proptest::{prelude::*, sample::select};
 use std::path::Path;
 
@@ -97,6 +97,48 @@ proptest! {
             }
         }
         prop_assert!(!is_first || list.is_ok(), "{text}: {list:?}");
+    }
+}
+
+/// What the ten of a row are, by the headings of its second to fourth columns, and the point that the inertia is about then.
+const FORMS: [([&str; 3], &str); 5] = [
+    (["cx", "cy", "cz"], "cg"),
+    (["com_x_mm", "com_y_mm", "com_z_mm"], "cg"),
+    (["mcx", "mcy", "mcz"], "origin"),
+    (["first_moment_1_kg_m", "first_moment_2_kg_m", "first_moment_3_kg_m"], "origin"),
+    (["hx [g mm]", "hy [g mm]", "hz [g mm]"], "origin"),
+];
+
+proptest! {
+    /// The inertia beside first moments is about the origin, beside a mass centre about that, and a row may say so and nothing else: one that
+    /// told the truth was refused, and one that did not was taken.
+    #[test]
+    fn the_point_of_a_row_is_that_of_its_form(
+        (centre, point) in select(&FORMS[..]),
+        heading in select(&REFERENCES[..]),
+        (cell, is_of) in select(&[
+            ("cg", "cg"), ("CoM", "cg"), ("own mass centre", "cg"), ("Centre of gravity", "cg"), ("own", "cg"),
+            ("origin", "origin"), ("the Origin", "origin"), ("frame origin", "origin"), ("coordinate_origin", "origin"),
+            ("", "both"), ("NA", "both"), ("point A", "none"), ("not origin", "none"), ("0", "none"), ("-", "none"),
+        ][..]),
+        order in Just((0..11).collect::<Vec<usize>>()).prop_shuffle(),
+    ) {
+        let [x, y, z] = centre;
+        let headings = ["mass", x, y, z, "ixx", "iyy", "izz", "ixy", "ixz", "iyz", heading];
+        let cells = ["5", "1", "2", "3", "4", "5", "6", "0", "0", "0", cell];
+        let line = |of: [&str; 11]| order.iter().map(|i| of[*i]).collect::<Vec<_>>().join(",");
+        let text = format!("{}\n{}\n", line(headings), line(cells));
+        let file = InertiaFile::parse(Path::new("t.csv"), text.clone().into_bytes(), Products::default()).unwrap();
+        let ten = TenTable::of(&file).unwrap();
+        let expected = if point == "origin" { TenCentre::FirstMoments } else { TenCentre::MassCentre };
+        prop_assert_eq!(ten.centre(), Some(expected));
+        let is_true = is_of == "both" || is_of == point;
+        prop_assert_eq!(file.bodies()[0].inertia().is_ok(), is_true, "{}", text);
+        prop_assert_eq!(ten.rows()[0].values().is_ok(), is_true, "{}", text);
+        if let Err(error) = file.bodies()[0].inertia() {
+            let said = error.to_string();
+            prop_assert!(said.contains(&format!("{point:?}")) && said.contains(&format!("{cell:?}")), "{}", said);
+        }
     }
 }
 

@@ -19,6 +19,7 @@ use crate::{
     error::Refusal,
     products_comment::stated_products,
     rows::{Field, NOT_KNOWN, Rows, headers, without_marks},
+    table_terms::TableTerms,
     text::Text,
     units::{Unit, squeezed},
 };
@@ -195,6 +196,7 @@ impl PartsTable {
         }
         let has_parents = has(Column::Parent);
         let stated = stated_products(&text)?;
+        let terms = &TableTerms::default();
         let mut found = Vec::new();
         while let Some(fields) = next(&text, &mut rows)? {
             let line = line_of(&text, &fields);
@@ -204,10 +206,15 @@ impl PartsTable {
                 );
             }
             let cells: Vec<String> = fields.iter().map(|field| written(&text, field)).collect();
-            let row =
-                Cells { columns: &columns, headings: &headings, cells: &cells, stated, products }
-                    .row(line);
-            found.push(row.map_err(|error| error.beside(&passed_over))?);
+            let row = Cells {
+                columns: &columns,
+                headings: &headings,
+                cells: &cells,
+                stated,
+                products,
+                terms,
+            };
+            found.push(row.row(line).map_err(|error| error.beside(&passed_over))?);
         }
         if found.is_empty() {
             return Err(PartsError::new(line, None, PartsProblem::NoRows));
@@ -270,6 +277,7 @@ impl Edges {
         // Masses and the like are not read from here, whatever they say.
         let column = |heading: &String| Unread::of(heading).map_or(Heading::Other, Heading::Unread);
         let columns: Vec<Heading> = headings.iter().map(column).collect();
+        let terms = TableTerms::default();
         let mut edges = Vec::new();
         let mut lines: BTreeMap<(String, String), usize> = BTreeMap::new();
         while let Some(fields) = next(&text, &mut rows)? {
@@ -288,9 +296,14 @@ impl Edges {
             let (child, parent) = (of(places[0])?, of(places[1])?);
             // A child that stands four times, or has a 4 beside it, is meant to be there four times.
             let cells: Vec<String> = fields.iter().map(|field| written(&text, field)).collect();
-            let (stated, products) = (None, None);
-            let row =
-                Cells { columns: &columns, headings: &headings, cells: &cells, stated, products };
+            let row = Cells {
+                columns: &columns,
+                headings: &headings,
+                cells: &cells,
+                stated: None,
+                products: None,
+                terms: &terms,
+            };
             if let Some(problem) = row.unread().or_else(|| row.not_known(false, false)) {
                 return Err(PartsError::new(line, Some(&child), problem));
             }

@@ -10,6 +10,7 @@ use crate::{
     FileBodyError, Products,
     body::{Number, shortened},
     rows::{NOT_KNOWN, is_blank},
+    table_terms::TableTerms,
 };
 
 /// How far the four components of an attitude may be from a unit quaternion.
@@ -124,6 +125,8 @@ pub(super) struct Cells<'a> {
     pub(super) stated: Option<Products>,
     /// What they are where the table does not say it.
     pub(super) products: Option<Products>,
+    /// What holds for all rows.
+    pub(super) terms: &'a TableTerms,
 }
 
 impl Cells<'_> {
@@ -160,7 +163,7 @@ impl Cells<'_> {
     pub(super) fn unread(&self) -> Option<PartsProblem> {
         let mut cells = self.columns.iter().zip(self.headings).zip(self.cells);
         let problem = |((column, heading), cell): ((&Heading, &String), &String)| match column {
-            Heading::Unread(what) => what.problem(heading, cell),
+            Heading::Unread(what) => what.problem(heading, cell, self.terms),
             _ => None,
         };
         cells.find_map(problem).map(PartsProblem::from)

@@ -5,6 +5,7 @@ use crate::{
     body::shortened,
     rows::is_blank,
     spread::words,
+    table_terms::{InertiaPoint, TableTerms},
     units::{Dimension, Unit, squeezed},
 };
 
@@ -198,18 +199,23 @@ impl Unread {
         KINDS.iter().find(is_of).map(|(kind, ..)| *kind)
     }
 
-    /// Why a cell under a heading of this kind is refused, if it says something that would change the row.
-    pub(crate) fn problem(self, heading: &str, cell: &str) -> Option<FileBodyError> {
-        let says_nothing = is_blank(cell) || self.is_neutral(cell);
+    /// Why a cell under a heading of this kind is refused, if it says something that would change the row of a table.
+    pub(crate) fn problem(
+        self,
+        heading: &str,
+        cell: &str,
+        terms: &TableTerms,
+    ) -> Option<FileBodyError> {
+        let says_nothing = is_blank(cell) || self.is_neutral(cell, terms);
         (!says_nothing).then(|| FileBodyError::Unread {
             heading: shortened(heading),
             value: shortened(cell),
-            why: self.because(),
+            why: self.because(terms),
         })
     }
 
     /// Why such a column must not say it, and what to do.
-    fn because(self) -> &'static str {
+    fn because(self, terms: &TableTerms) -> &'static str {
         match self {
             Self::Count => {
                 "a row is one part, and must have mass, mass centre and inertia of all of them together, or stand as many times as \
@@ -222,10 +228,16 @@ impl Unread {
             Self::Unit => {
                 "units are those of a column, and must stand in its heading or in a row below the header"
             }
-            Self::Reference => {
-                "the inertia of a row is that about its own mass centre: the column must be empty, or say so, as \"cg\" or \
-                 \"mass centre\""
-            }
+            Self::Reference => match terms.point {
+                InertiaPoint::MassCentre => {
+                    "the inertia of a row is that about its own mass centre: the column must be empty, or say so, as \"cg\" or \
+                     \"mass centre\""
+                }
+                InertiaPoint::Origin => {
+                    "in a table with first moments, the inertia of a row is that about the origin: the column must be empty, or \
+                     say \"origin\""
+                }
+            },
             Self::Growth => {
                 "no growth allowance is added: the mass and the inertia must have it in them; the column must be empty, 0 or none"
             }
@@ -233,7 +245,7 @@ impl Unread {
     }
 
     /// Whether a cell says nothing that would change the row.
-    fn is_neutral(self, cell: &str) -> bool {
+    fn is_neutral(self, cell: &str, terms: &TableTerms) -> bool {
         let is_none = NONE.iter().any(|word| cell.eq_ignore_ascii_case(word));
         let of = |word: &str| word.trim_end_matches(['%', '°']).trim().parse::<f64>().ok();
         match self {
@@ -259,21 +271,25 @@ impl Unread {
             }
             Self::Reference => {
                 let plain = squeezed(cell);
-                let known = [
-                    "cg",
-                    "cog",
-                    "com",
-                    "cm",
-                    "masscentre",
-                    "masscenter",
-                    "centreofmass",
-                    "centerofmass",
-                    "centreofgravity",
-                    "centerofgravity",
-                ];
+                let known: &[&str] = match terms.point {
+                    InertiaPoint::MassCentre => &[
+                        "cg",
+                        "cog",
+                        "com",
+                        "cm",
+                        "masscentre",
+                        "masscenter",
+                        "centreofmass",
+                        "centerofmass",
+                        "centreofgravity",
+                        "centerofgravity",
+                        "own",
+                    ],
+                    InertiaPoint::Origin => &["origin", "frameorigin", "coordinateorigin"],
+                };
                 let of_part = ["own", "its", "the", "part", "parts"];
                 let rest = of_part.iter().find_map(|word| plain.strip_prefix(word));
-                known.contains(&rest.unwrap_or(&plain)) || plain == "own"
+                [rest.unwrap_or(&plain), &plain].iter().any(|word| known.contains(word))
             }
         }
     }
@@ -363,19 +379,21 @@ mod tests {
     /// Words that may be numbers were none in columns of angles and of growth.
     #[test]
     fn no_word_that_may_be_a_number_is_neutral() {
+        let terms = TableTerms::default();
         for what in [Unread::Count, Unread::Turn, Unread::Growth] {
             for word in
                 ["four", "ninety", "half", "½", "IV", "pair", "up", "?", "yes", "15%", "90", "1e-3"]
             {
-                assert!(!what.is_neutral(word), "{what:?} {word}");
+                assert!(!what.is_neutral(word, &terms), "{what:?} {word}");
             }
         }
         for what in [Unread::Turn, Unread::Growth] {
             for word in ["0", "0.0", "-0", "0 %", "0°", "-", "none", "N/A", "Zero"] {
                 let is_of_other = what == Unread::Turn && word == "0 %";
-                assert!(is_of_other || what.is_neutral(word), "{what:?} {word}");
+                assert!(is_of_other || what.is_neutral(word, &terms), "{what:?} {word}");
             }
         }
-        assert!(Unread::Turn.is_neutral("[0, 0, 0]") && !Unread::Turn.is_neutral("[0, ninety, 0]"));
+        let is_neutral = |cell| Unread::Turn.is_neutral(cell, &terms);
+        assert!(is_neutral("[0, 0, 0]") && !is_neutral("[0, ninety, 0]"));
     }
 }
