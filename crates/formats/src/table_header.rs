@@ -90,14 +90,25 @@ pub(crate) struct Header {
 impl Header {
     /// Why a row is refused that says by a cell which is not read that its inertia is another one.
     pub(crate) fn unread(&self, text: &Text, row: &[Field]) -> Option<FileBodyError> {
+        self.problem(text, row, Unread::problem).map(|(_, error)| error)
+    }
+
+    /// The first cell of a row that is refused by a judgement of those that are not read, and why.
+    fn problem(
+        &self,
+        text: &Text,
+        row: &[Field],
+        judge: impl Fn(Unread, &str, &str, &TableTerms) -> Option<FileBodyError>,
+    ) -> Option<(Field, FileBodyError)> {
         self.unread.iter().find_map(|(at, what)| {
-            let (heading, cell) = (self.row.get(*at)?, row.get(*at)?);
-            let [heading, cell] = [heading, cell].map(|field| field.of(text.as_str()).trim());
+            let (heading, field) = (self.row.get(*at)?, row.get(*at)?);
+            let [heading, cell] = [heading, field].map(|field| field.of(text.as_str()).trim());
             // A unit may also be a thing that was made: unit FM-1 of a series.
             let is_thing = *what == Unread::Unit
                 && ["unit", "units"].contains(&squeezed(heading).as_str())
                 && !Unit::is_named(cell);
-            if is_thing { None } else { what.problem(heading, cell, &self.terms) }
+            let error = if is_thing { None } else { judge(*what, heading, cell, &self.terms) };
+            error.map(|error| (*field, error))
         })
     }
 }
@@ -236,27 +247,57 @@ fn header(text: &Text, row: &[Field], below: Option<&[Field]>) -> Result<Option<
     let inertia_kg_m2 = of_inertia.si();
     let is_read = |at: usize| columns.contains(&Some(at));
     let others = row.iter().enumerate().filter(|(at, _)| !is_read(*at));
-    let others = others.map(|(at, field)| (at, field.of(text.as_str())));
-    let unread = others.clone().filter_map(|(at, heading)| Some((at, would_change(heading)?)));
+    let others: Vec<(usize, &str)> =
+        others.map(|(at, field)| (at, field.of(text.as_str()))).collect();
+    let unread = others.iter().filter_map(|(at, heading)| Some((*at, would_change(heading)?)));
     let unread = unread.collect();
-    let has_mass = columns[MASS].is_some();
-    let point =
-        if has_mass { point(others.map(|(_, heading)| heading)) } else { InertiaPoint::MassCentre };
-    let terms = TableTerms { point };
-    Ok(Some(Header { row: row.to_vec(), columns, mass_kg, inertia_kg_m2, units, unread, terms }))
+    let below = |at: usize| Some(*units.as_ref()?.get(at)?);
+    let centre = others.iter().filter_map(|(at, heading)| Some((*at, TenHeading::of(heading)?)));
+    let centre = centre.filter_map(|(at, heading)| CentreColumn::of(text, heading, below(at)));
+    let terms = terms(mass_kg, inertia_kg_m2, columns[MASS].is_some(), &centre.collect::<Vec<_>>());
+    let header =
+        Header { row: row.to_vec(), columns, mass_kg, inertia_kg_m2, units, unread, terms };
+    let units = header.units.as_deref().unwrap_or_default();
+    match header.problem(text, units, Unread::problem_in_units) {
+        Some((field, error)) => Err(text.malformed(field.start, error)),
+        None => Ok(Some(header)),
+    }
 }
 
-/// What the inertia is about in a table with a mass, by its other columns: by three first moments and no mass centre it is the origin.
-fn point<'a>(headings: impl Iterator<Item = &'a str>) -> InertiaPoint {
-    let mut has_moment = [false; 10];
-    for heading in headings.filter_map(TenHeading::of).filter(|heading| heading.unit.is_ok()) {
-        match heading.centre {
-            Some(TenCentre::MassCentre) => return InertiaPoint::MassCentre,
-            Some(TenCentre::FirstMoments) => has_moment[heading.place] = true,
-            None => {}
-        }
+/// A column of the mass centre or of first moments, and its unit.
+struct CentreColumn {
+    place: usize,
+    kind: TenCentre,
+    unit: Unit,
+}
+
+impl CentreColumn {
+    /// By its heading and what stands in the row of units below; nothing of another column, or if its unit is not read.
+    fn of(text: &Text, heading: TenHeading, below: Option<Field>) -> Option<Self> {
+        let (place, kind) = (heading.place, heading.centre?);
+        let below =
+            below.map_or(Ok(Unit::none()), |cell| unit_below(text, &cell, kind.dimension()));
+        let unit = one_unit(heading.unit.ok()?, below.ok()?).ok()?;
+        Some(Self { place, kind, unit })
     }
-    if has_moment[1..4] == [true; 3] { InertiaPoint::Origin } else { InertiaPoint::MassCentre }
+}
+
+/// What the columns say of all rows. By a mass, three first moments and no mass centre, the inertia is about the origin.
+fn terms(mass_kg: f64, inertia_kg_m2: f64, has_mass: bool, centre: &[CentreColumn]) -> TableTerms {
+    // A column that states no unit is in that of the others.
+    let stated: Vec<&CentreColumn> =
+        centre.iter().filter(|column| !column.unit.text.is_empty()).collect();
+    let all: Vec<&CentreColumn> = if stated.is_empty() { centre.iter().collect() } else { stated };
+    let centres = all.iter().map(|column| (column.kind.dimension(), column.unit.si));
+    let units = [(Dimension::Mass, mass_kg), (Dimension::Inertia, inertia_kg_m2)].into_iter();
+    let are_moments = centre.iter().all(|column| column.kind == TenCentre::FirstMoments);
+    let is_there = |place: usize| centre.iter().any(|column| column.place == place);
+    let point = if has_mass && are_moments && (1..=3).all(is_there) {
+        InertiaPoint::Origin
+    } else {
+        InertiaPoint::MassCentre
+    };
+    TableTerms::new(units.chain(centres), point)
 }
 
 /// Why a row is no header, where it would be one if what follows the names of the moments were units.

@@ -28,7 +28,7 @@ pub(crate) enum Dimension {
 }
 
 impl Dimension {
-    const ALL: [Self; 4] = [Self::Mass, Self::Length, Self::FirstMoment, Self::Inertia];
+    pub(crate) const ALL: [Self; 4] = [Self::Mass, Self::Length, Self::FirstMoment, Self::Inertia];
 }
 
 /// A unit as it is written, nothing where none is stated, and how much it is in SI.

@@ -16,6 +16,7 @@ mod places;
 mod prefixes;
 mod quotes;
 mod robots;
+mod row_units;
 mod samples;
 mod several;
 mod slips;

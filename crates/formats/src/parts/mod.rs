@@ -19,7 +19,7 @@ use crate::{
     error::Refusal,
     products_comment::stated_products,
     rows::{Field, NOT_KNOWN, Rows, headers, without_marks},
-    table_terms::TableTerms,
+    table_terms::{InertiaPoint, TableTerms},
     text::Text,
     units::{Unit, squeezed},
 };
@@ -130,7 +130,7 @@ impl PartsTable {
 
     fn rows_of(bytes: &[u8], products: Option<Products>) -> Result<Raw, PartsError> {
         let text = Text::new(bytes, true)?;
-        let Some((line, headings, mut rows)) = header(&text)? else {
+        let Some(Header { line, headings, units, mut rows }) = header(&text)? else {
             return Err(Refusal::from(FileProblem::Empty).into());
         };
         let columns = headings.iter().map(|heading| Heading::of(heading));
@@ -196,7 +196,18 @@ impl PartsTable {
         }
         let has_parents = has(Column::Parent);
         let stated = stated_products(&text)?;
-        let terms = &TableTerms::default();
+        let measured = columns.iter().filter_map(Heading::dimension);
+        let measured = measured.map(|(dimension, unit)| (dimension, unit.unwrap_or(1.0)));
+        let terms = &TableTerms::new(measured, InertiaPoint::MassCentre);
+        if let Some((line, cells)) = &units {
+            let problem = |((column, heading), cell): ((&Heading, &String), &String)| match column {
+                Heading::Unread(what) => what.problem_in_units(heading, cell, terms),
+                _ => None,
+            };
+            if let Some(error) = columns.iter().zip(&headings).zip(cells).find_map(problem) {
+                return Err(PartsError::new(*line, None, error.into()));
+            }
+        }
         let mut found = Vec::new();
         while let Some(fields) = next(&text, &mut rows)? {
             let line = line_of(&text, &fields);
@@ -316,9 +327,20 @@ impl Edges {
     }
 }
 
-/// Line and headings of the header, which may stand below titles and have the units in a row below it, and the rows below both.
-/// Where no line names parts and masses, the first one is the header.
-fn header(text: &Text) -> Result<Option<(usize, Vec<String>, Rows<'_>)>, PartsError> {
+/// The header of a list of parts, and what stands below it.
+struct Header<'a> {
+    line: usize,
+    /// With the units of the row below.
+    headings: Vec<String>,
+    /// Line and cells of that row, if there is one.
+    units: Option<(usize, Vec<String>)>,
+    /// The rows below both.
+    rows: Rows<'a>,
+}
+
+/// The header, which may stand below titles and have the units in a row below it. Where no line names parts and masses, the first one is the
+/// header.
+fn header(text: &Text) -> Result<Option<Header<'_>>, PartsError> {
     let cells = |row: &[Field]| row.iter().map(|field| cell(text, field)).collect::<Vec<_>>();
     let is_header = |cells: &[String]| {
         let columns: Vec<Heading> = cells.iter().map(|cell| Heading::of(cell)).collect();
@@ -347,14 +369,15 @@ fn header(text: &Text) -> Result<Option<(usize, Vec<String>, Rows<'_>)>, PartsEr
     };
     let mut headings = cells(&first);
     let mut below = rows.clone();
-    if let Some(Ok(units)) = below.next() {
-        let line = line_of(text, &units);
-        let with_units = with_units(&headings, &cells(&units));
+    let mut units = None;
+    if let Some(Ok(row)) = below.next() {
+        let (line, row) = (line_of(text, &row), cells(&row));
+        let with_units = with_units(&headings, &row);
         if let Some(with_units) = with_units.map_err(|p| PartsError::new(line, None, p))? {
-            (headings, rows) = (with_units, below);
+            (headings, units, rows) = (with_units, Some((line, row)), below);
         }
     }
-    Ok(Some((line_of(text, &first), headings, rows)))
+    Ok(Some(Header { line: line_of(text, &first), headings, units, rows }))
 }
 
 /// The headings with the units of the row below them, if it is a row of units: it has one for a number, and no number.

@@ -5,8 +5,8 @@ use crate::{
     body::shortened,
     rows::is_blank,
     spread::words,
-    table_terms::{InertiaPoint, TableTerms},
-    units::{Dimension, Unit, squeezed},
+    table_terms::{InertiaPoint, TableTerms, dimension_of},
+    units::{Dimension, squeezed},
 };
 
 /// What would change the numbers of a row, and is not read.
@@ -33,35 +33,7 @@ const INERTIAS: [&str; 5] = ["inertia", "inertias", "moi", "moments", "products"
 
 const KINDS: [Words; 8] = [
     // Before counts: `units` alone are those of the row.
-    (
-        Unread::Unit,
-        &[&["unit", "units", "uom"]],
-        &[
-            "mass",
-            "masses",
-            "of",
-            "for",
-            "the",
-            "length",
-            "lengths",
-            "inertia",
-            "inertias",
-            "moments",
-            "products",
-            "centre",
-            "center",
-            "cg",
-            "com",
-            "moi",
-            "poi",
-            "distance",
-            "dimension",
-            "dimensions",
-            "size",
-            "sizes",
-            "weight",
-        ],
-    ),
+    (Unread::Unit, &[&["unit", "units", "uom"]], &["of", "for", "the", "and"]),
     // A `part number` names a part, and a `number of parts` counts it.
     (Unread::Count, &[&["number", "num"]], &[]),
     (
@@ -190,11 +162,13 @@ impl Unread {
     pub(crate) fn of(heading: &str) -> Option<Self> {
         let lower = heading.to_lowercase();
         let all: Vec<&str> = words(&lower).filter(|word| !word.is_empty()).collect();
-        let is_of = |(_, lists, beside): &&Words| {
+        let is_of = |(kind, lists, beside): &&Words| {
             let mut rest = all.iter();
             let is_key = |word: &&str| lists.iter().any(|keys| keys.contains(word));
+            // Units may be those of anything.
+            let is_measured = |word: &&str| *kind == Self::Unit && dimension_of(word).is_some();
             lists.iter().all(|keys| rest.any(|word| keys.contains(word)))
-                && all.iter().all(|word| is_key(word) || beside.contains(word))
+                && all.iter().all(|word| is_key(word) || is_measured(word) || beside.contains(word))
         };
         KINDS.iter().find(is_of).map(|(kind, ..)| *kind)
     }
@@ -206,12 +180,29 @@ impl Unread {
         cell: &str,
         terms: &TableTerms,
     ) -> Option<FileBodyError> {
-        let says_nothing = is_blank(cell) || self.is_neutral(cell, terms);
+        let says_nothing = is_blank(cell) || self.is_neutral(heading, cell, terms);
         (!says_nothing).then(|| FileBodyError::Unread {
             heading: shortened(heading),
             value: shortened(cell),
             why: self.because(terms),
         })
+    }
+
+    /// Why a cell in the row of units is refused, if it says something of all rows that would change them. What stands there under
+    /// another heading is the unit of what is below.
+    pub(crate) fn problem_in_units(
+        self,
+        heading: &str,
+        cell: &str,
+        terms: &TableTerms,
+    ) -> Option<FileBodyError> {
+        match self {
+            Self::Unit | Self::Reference => {
+                let says_something = cell.contains(char::is_alphabetic);
+                says_something.then(|| self.problem(heading, cell, terms)).flatten()
+            }
+            Self::Count | Self::Turn | Self::Growth => None,
+        }
     }
 
     /// Why such a column must not say it, and what to do.
@@ -226,9 +217,10 @@ impl Unread {
                  attitude_x, attitude_y, attitude_z and attitude_w; the column must be empty, 0 or none"
             }
             Self::Unit => {
-                "units are those of a column, and must stand in its heading or in a row below the header"
+                "units are those of a column, and must stand in its heading or in a row below the header: a cell in a row must be empty, \
+                 or name the same units, each as a heading may name it"
             }
-            Self::Reference => match terms.point {
+            Self::Reference => match terms.point() {
                 InertiaPoint::MassCentre => {
                     "the inertia of a row is that about its own mass centre: the column must be empty, or say so, as \"cg\" or \
                      \"mass centre\""
@@ -245,7 +237,7 @@ impl Unread {
     }
 
     /// Whether a cell says nothing that would change the row.
-    fn is_neutral(self, cell: &str, terms: &TableTerms) -> bool {
+    fn is_neutral(self, heading: &str, cell: &str, terms: &TableTerms) -> bool {
         let is_none = NONE.iter().any(|word| cell.eq_ignore_ascii_case(word));
         let of = |word: &str| word.trim_end_matches(['%', '°']).trim().parse::<f64>().ok();
         match self {
@@ -260,18 +252,15 @@ impl Unread {
             }
             Self::Growth => is_none || of(cell) == Some(0.0),
             Self::Unit => {
-                let plain = cell.to_lowercase();
-                let known = ["kg", "m", "kgm2", "kg·m²", "si", "ea", "each", "pc", "pcs"];
-                let is_unit = |word: &str| word.contains(char::is_alphabetic);
-                let is_si = |of| Unit::of(cell, of).is_ok_and(|unit| unit.si == 1.0);
-                is_si(Dimension::Inertia)
-                    || plain
-                        .split([',', ' ', ';', '/'])
-                        .all(|word| !is_unit(word) || known.contains(&word))
+                let heading = heading.to_lowercase();
+                let mut named: Vec<Dimension> = words(&heading).filter_map(dimension_of).collect();
+                named.dedup();
+                let one = <[Dimension; 1]>::try_from(named).ok().map(|[one]| one);
+                terms.are_units_in(cell, one)
             }
             Self::Reference => {
                 let plain = squeezed(cell);
-                let known: &[&str] = match terms.point {
+                let known: &[&str] = match terms.point() {
                     InertiaPoint::MassCentre => &[
                         "cg",
                         "cog",
@@ -384,16 +373,16 @@ mod tests {
             for word in
                 ["four", "ninety", "half", "½", "IV", "pair", "up", "?", "yes", "15%", "90", "1e-3"]
             {
-                assert!(!what.is_neutral(word, &terms), "{what:?} {word}");
+                assert!(!what.is_neutral("", word, &terms), "{what:?} {word}");
             }
         }
         for what in [Unread::Turn, Unread::Growth] {
             for word in ["0", "0.0", "-0", "0 %", "0°", "-", "none", "N/A", "Zero"] {
                 let is_of_other = what == Unread::Turn && word == "0 %";
-                assert!(is_of_other || what.is_neutral(word, &terms), "{what:?} {word}");
+                assert!(is_of_other || what.is_neutral("", word, &terms), "{what:?} {word}");
             }
         }
-        let is_neutral = |cell| Unread::Turn.is_neutral(cell, &terms);
+        let is_neutral = |cell| Unread::Turn.is_neutral("", cell, &terms);
         assert!(is_neutral("[0, 0, 0]") && !is_neutral("[0, ninety, 0]"));
     }
 }
