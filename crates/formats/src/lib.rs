@@ -70,6 +70,7 @@ mod ten_heading;
 mod ten_moments;
 mod ten_table;
 mod text;
+mod unit_words;
 mod units;
 mod walk;
 mod xml;

@@ -12,6 +12,7 @@ use crate::{
     table_terms::{InertiaPoint, TableTerms},
     ten_heading::{TenCentre, TenHeading},
     text::Text,
+    unit_words::speaks_of_a_unit,
     units::{BadUnit, Dimension, SharedUnit, Unit, UnitProblem, longest_name, squeezed},
 };
 
@@ -106,7 +107,7 @@ impl Header {
             // A unit may also be a thing that was made: unit FM-1 of a series.
             let is_thing = *what == Unread::Unit
                 && ["unit", "units"].contains(&squeezed(heading).as_str())
-                && !Unit::is_named(cell);
+                && !speaks_of_a_unit(cell);
             let error = if is_thing { None } else { judge(*what, heading, cell, &self.terms) };
             error.map(|error| (*field, error))
         })

@@ -3,7 +3,7 @@
 use crate::body::shortened;
 
 /// Units of mass, and what they are in kg.
-const MASSES: [(&str, f64); 7] = [
+pub(crate) const MASSES: [(&str, f64); 7] = [
     ("kg", 1.0),
     ("g", 1e-3),
     ("mg", 1e-6),
@@ -14,7 +14,7 @@ const MASSES: [(&str, f64); 7] = [
 ];
 
 /// Units of length, and what their squares are in m².
-const LENGTHS: [(&str, f64); 5] =
+pub(crate) const LENGTHS: [(&str, f64); 5] =
     [("m", 1.0), ("cm", 1e-4), ("mm", 1e-6), ("in", 6.4516e-4), ("ft", 0.092_903_04)];
 
 /// What a unit measures.
@@ -42,14 +42,6 @@ impl Unit {
     /// That of SI, which nothing states.
     pub(crate) fn none() -> Self {
         Self { text: String::new(), si: 1.0 }
-    }
-
-    /// Whether a text, or a word of it, is a unit of any dimension.
-    pub(crate) fn is_named(text: &str) -> bool {
-        let words = text.split([',', ';', '/', ' ']).chain([text]);
-        words.filter(|word| !word.trim().is_empty()).any(|word| {
-            Dimension::ALL.into_iter().any(|dimension| Self::of(word, dimension).is_ok())
-        })
     }
 
     /// The unit in a text that holds nothing else.

@@ -1,0 +1,356 @@
+//! Whether words speak of a unit of measurement, or are the name of a thing: `lbf in s2`, and `FM-1` of a series.
+
+use crate::units::{LENGTHS, MASSES};
+
+/// What a word is where units stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// A unit of mass or force.
+    Amount,
+    Length,
+    Time,
+    /// A system of units.
+    System,
+    /// What stands beside units, and is none.
+    Beside,
+}
+
+/// Symbols beside those that are read, in small letters. Several of them may be one word, as `ozin`.
+const SYMBOLS: [(Kind, &[&str]); 3] = [
+    (
+        Kind::Amount,
+        &[
+            "kgs", "gm", "gms", "gr", "lbs", "lbf", "oz", "ozm", "ozf", "kgf", "kp", "kn", "n",
+            "slugs", "slinch", "dyn", "pdl", "cwt",
+        ],
+    ),
+    (Kind::Length, &["dm", "km", "um", "µm", "μm", "yd"]),
+    (Kind::Time, &["s", "sec"]),
+];
+
+/// Whole words, in small letters and without the `s` of many.
+const WORDS: [(Kind, &[&str]); 5] = [
+    (
+        Kind::Amount,
+        &["gram", "gramme", "kilo", "pound", "ton", "tonne", "ounce", "newton", "dyne", "poundal"],
+    ),
+    (Kind::Length, &["metre", "meter", "inch", "inche", "foot", "feet", "yard", "micron"]),
+    (Kind::Time, &["second"]),
+    (
+        Kind::System,
+        &[
+            "si", "mks", "mmks", "mmgs", "mgs", "cgs", "ips", "fps", "imperial", "english",
+            "british", "metric", "us", "usc", "uscs",
+        ],
+    ),
+    (
+        Kind::Beside,
+        &[
+            "unit",
+            "system",
+            "customary",
+            "per",
+            "square",
+            "squared",
+            "sq",
+            "of",
+            "and",
+            "all",
+            "force",
+            "mass",
+            "masse",
+            "length",
+            "inertia",
+            "moment",
+            "product",
+            "value",
+        ],
+    ),
+];
+
+/// What may stand before a word for a unit.
+const PREFIXES: [&str; 5] = ["kilo", "milli", "centi", "mega", "micro"];
+
+/// Symbols that say in small letters that a unit is meant, whatever stands beside them.
+const CERTAIN: [&str; 6] = ["oz", "lb", "mm", "cm", "slinch", "mg"];
+
+/// The same in capitals too. Of two capital letters names are made: the `CM-1` is a thing.
+const CERTAIN_IN_CAPITALS: [&str; 8] = ["kg", "kgs", "lbs", "lbm", "lbf", "kgf", "slug", "slugs"];
+
+/// Letters that stand together, or digits.
+struct Run<'a> {
+    text: &'a str,
+    is_capital: bool,
+    /// Whether a 2 follows it without anything between.
+    is_squared: bool,
+}
+
+/// Whether a text speaks of a unit: by a square behind letters, by a word that is sure to be a unit, or by having no other words
+/// than those of units. A single capital letter is the name of a thing, as `in` is a word between others.
+pub(crate) fn speaks_of_a_unit(text: &str) -> bool {
+    // Longer texts are no units, and would be searched for long.
+    if text.len() > 200 {
+        return false;
+    }
+    let runs = runs(text);
+    has_square(text) || runs.iter().any(is_certain) || are_units(&runs)
+}
+
+/// Whether letters stand before the mark of a square.
+fn has_square(text: &str) -> bool {
+    let ends_a_unit = |c: char| c.is_alphabetic() || ")]}".contains(c);
+    let text: String = text.chars().filter(|c| !c.is_whitespace()).collect();
+    ["²", "^2", "^{2}", "**2"]
+        .into_iter()
+        .any(|mark| text.match_indices(mark).any(|(at, _)| text[..at].ends_with(ends_a_unit)))
+}
+
+/// The runs of letters and of digits.
+fn runs(text: &str) -> Vec<Run<'_>> {
+    let mut runs = Vec::new();
+    let mut rest = text;
+    while let Some(first) = rest.chars().next() {
+        let is_of = |c: char| {
+            if first.is_alphabetic() { c.is_alphabetic() } else { c.is_numeric() }
+        };
+        let end = rest.find(|c| !is_of(c)).unwrap_or(rest.len());
+        let (run, after) = rest.split_at(end.max(first.len_utf8()));
+        if end > 0 {
+            let digits = after.len() - after.trim_start_matches(char::is_numeric).len();
+            let is_capital = !run.contains(char::is_lowercase);
+            runs.push(Run { text: run, is_capital, is_squared: &after[..digits] == "2" });
+        }
+        rest = after;
+    }
+    runs
+}
+
+fn is_certain(run: &Run<'_>) -> bool {
+    let word = run.text.to_lowercase();
+    let is_symbol = |list: &[&str]| list.contains(&word.as_str());
+    let is_length = || symbols(Kind::Length).any(|symbol| symbol == word);
+    let is_area = || run.is_squared && (is_length() || joined(&word, true).is_some());
+    is_symbol(&CERTAIN_IN_CAPITALS) || (!run.is_capital && (is_symbol(&CERTAIN) || is_area()))
+}
+
+/// Whether there is no other word than those of units, and one of them does not stand for a thing.
+fn are_units(runs: &[Run<'_>]) -> bool {
+    let has_two = runs.iter().any(|run| run.text == "2");
+    let mut found: Vec<(Kind, bool)> = Vec::new();
+    let mut before: Option<&Run<'_>> = None;
+    let mut needs_amount = false;
+    for run in runs {
+        if run.text.starts_with(char::is_numeric) {
+            // A number is the power of what stands before it, or that of a thing.
+            let is_power = matches!(found.last(), Some((Kind::Length | Kind::Time, _)));
+            let Some(before) = before.take().filter(|_| is_power && run.text == "2") else {
+                return false;
+            };
+            // The FT-2 is a thing, and KG FT2 is none.
+            needs_amount |= before.is_capital;
+            continue;
+        }
+        let word = run.text.to_lowercase();
+        let Some(parts) =
+            whole(&word).map(|kind| vec![(kind, word.as_str())]).or_else(|| joined(&word, has_two))
+        else {
+            return false;
+        };
+        // A capital letter is a name, or a part of one: `CM-T`.
+        if run.is_capital && word.chars().count() == 1 && !has_two {
+            return false;
+        }
+        let is_clear = |part: &str| part != "n" && (part.chars().count() > 1 || !run.is_capital);
+        found.extend(parts.into_iter().map(|(kind, part)| (kind, is_clear(part))));
+        before = Some(run);
+    }
+    let is_unit = |(kind, is_clear): &(Kind, bool)| match kind {
+        Kind::Amount | Kind::Length | Kind::System => *is_clear,
+        Kind::Time | Kind::Beside => false,
+    };
+    let has_amount = found.iter().any(|(kind, _)| *kind == Kind::Amount);
+    found.iter().any(is_unit) && (has_amount || !needs_amount)
+}
+
+/// Every symbol of a kind.
+fn symbols(kind: Kind) -> impl Iterator<Item = &'static str> {
+    let read: Vec<&str> = match kind {
+        Kind::Amount => MASSES.iter().map(|(name, _)| *name).collect(),
+        Kind::Length => LENGTHS.iter().map(|(name, _)| *name).collect(),
+        Kind::Time | Kind::System | Kind::Beside => Vec::new(),
+    };
+    let others = SYMBOLS.iter().filter(move |(of, _)| *of == kind);
+    read.into_iter().chain(others.flat_map(|(_, symbols)| symbols.iter().copied()))
+}
+
+/// What a word in small letters is, if it is one symbol or one word.
+fn whole(word: &str) -> Option<Kind> {
+    let is_symbol = |kind: &Kind| symbols(*kind).any(|symbol| symbol == word);
+    if let Some(kind) = [Kind::Amount, Kind::Length, Kind::Time].into_iter().find(is_symbol) {
+        return Some(kind);
+    }
+    let one = word.strip_suffix('s').unwrap_or(word);
+    let bare = PREFIXES.iter().find_map(|prefix| one.strip_prefix(prefix));
+    let names = [Some(word), Some(one), bare];
+    let is_name =
+        |(_, list): &&(Kind, &[&str])| names.iter().flatten().any(|name| list.contains(name));
+    WORDS.iter().find(is_name).map(|(kind, _)| *kind)
+}
+
+/// The symbols of a mass or a force, a length and perhaps a time that a word is made of: `ozin`, `lbfins`. Without a square, one letter
+/// is no mass there: `tin` is a word.
+fn joined(word: &str, has_two: bool) -> Option<Vec<(Kind, &str)>> {
+    symbols(Kind::Amount).filter(|amount| has_two || amount.len() > 1).find_map(|amount| {
+        let rest = word.strip_prefix(amount)?;
+        symbols(Kind::Length).find_map(|length| {
+            let time = rest.strip_prefix(length)?;
+            let is_time = time.is_empty() || symbols(Kind::Time).any(|symbol| symbol == time);
+            is_time.then(|| {
+                vec![(Kind::Amount, &word[..amount.len()]), (Kind::Length, &rest[..length.len()])]
+            })
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::{prelude::*, sample::select};
+
+    const AMOUNTS: [&str; 22] = [
+        "kg", "g", "mg", "Mg", "MG", "t", "lb", "lbm", "lbf", "slug", "slinch", "oz", "ozf", "gr",
+        "gm", "ton", "tonne", "pound", "pounds", "N", "kgf", "grams",
+    ];
+    const LENGTHS: [&str; 8] = ["m", "cm", "mm", "in", "ft", "inch", "foot", "meter"];
+    const BETWEEN: [&str; 8] = [" ", "·", "*", "-", "_", "⋅", ".", " * "];
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(4000))]
+
+        /// Of mass and length, or of force, length and time: whatever stands between and around them.
+        #[test]
+        fn units_of_inertia_are_units(
+            amount in select(&AMOUNTS[..]),
+            length in select(&LENGTHS[..]),
+            time in any::<bool>(),
+            between in select(&BETWEEN[..]),
+            square in select(&["2", "²", "^2", "**2", "^{2}", " ^ 2"][..]),
+            (before, after) in select(&[("", ""), ("[", "]"), ("(", ")"), ("unit: ", ""), ("in ", ""), ("", " system")][..]),
+            is_upper in any::<bool>(),
+        ) {
+            let time = if time { format!("{between}s") } else { String::new() };
+            let unit = format!("{amount}{between}{length}{time}{square}");
+            let unit = if is_upper { unit.to_uppercase() } else { unit };
+            let text = format!("{before}{unit}{after}");
+            // The TM-2 is a thing.
+            let is_name = is_upper && amount.len() == 1 && length.len() == 1 && square == "2" && before != "in ";
+            prop_assert_eq!(speaks_of_a_unit(&text), !is_name, "{}", text);
+        }
+
+        /// The same without anything between, in small letters.
+        #[test]
+        fn symbols_in_one_word_are_units(
+            amount in select(&["kg", "g", "mg", "t", "lb", "lbm", "lbf", "slug", "oz", "gm", "gr", "N"][..]),
+            length in select(&["m", "cm", "mm", "in", "ft"][..]),
+            time in select(&["", "s", " s", "-s", "sec"][..]),
+            more in select(&["", " (CAD)", ", as drawn", " about CoM"][..]),
+        ) {
+            let unit = format!("{amount}{length}{time}2");
+            prop_assert!(speaks_of_a_unit(&unit), "{}", unit);
+            // Beside other words, a time is no unit of inertia.
+            let is_sure = time.is_empty() || amount.len() > 1 && !time.contains([' ', '-']);
+            let text = format!("{unit}{more}");
+            prop_assert!(!is_sure || speaks_of_a_unit(&text), "{}", text);
+        }
+
+        /// A thing has a name, a letter or a number of its own.
+        #[test]
+        fn names_of_things_are_none(
+            name in select(&[
+                "FM", "EM", "QM", "PFM", "STM", "EQM", "SN", "s/n", "vehicle", "Unit", "unit", "no.", "#", "CM", "SM", "TM", "GM",
+                "FT", "MM", "IN", "bus", "left foot", "Tank", "flight model", "G", "T", "M", "S", "N", "A",
+            ][..]),
+            between in select(&[" ", "-", "_", "", "."][..]),
+            number in select(&["1", "2", "3", "007", "12", "22", "A", "B", "T", "G", "M",  " in orbit", " at rest"][..]),
+        ) {
+            let text = format!("{name}{between}{number}");
+            // Together these may be others: `tinA`, `GMT`.
+            let is_apart = !between.is_empty() || number.starts_with(|c: char| !c.is_alphabetic());
+            prop_assert!(!is_apart || !speaks_of_a_unit(&text), "{}", text);
+        }
+    }
+
+    #[test]
+    fn words_and_systems_of_units_are_units() {
+        for unit in [
+            "inches",
+            "inch",
+            "pounds",
+            "pound",
+            "lbs",
+            "grams",
+            "kilograms",
+            "milligram",
+            "IPS",
+            "MMGS",
+            "CGS",
+            "cgs",
+            "SI",
+            "imperial",
+            "English",
+            "US",
+            "US customary",
+            "metric units",
+            "metric ton",
+            "lb, in",
+            "lb/in",
+            "mass in g",
+            "g",
+            "t",
+            "m",
+            "mm",
+            "in",
+            "MG",
+            "lbmm2",
+            "kg-square mm",
+            "kilogram square metres",
+            "kg(mm)2",
+            "see CAD, lb in2",
+            "MG mm2",
+            "pound-force inch second squared",
+            "gmcm2",
+            "Nmm s2",
+            "kg mm?",
+        ] {
+            assert!(speaks_of_a_unit(unit), "{unit}");
+        }
+        for thing in [
+            "",
+            "-",
+            "1",
+            "G",
+            "T",
+            "M",
+            "N",
+            "T 1",
+            "G-7",
+            "FM in orbit",
+            "no. 1 (t)",
+            "EM-T",
+            "SI-1",
+            "US-2",
+            "CGS 3",
+            "tin",
+            "unit T",
+            "GM T",
+            "CM-T",
+            "Unit 2",
+            "n",
+            "s",
+            "foot 1",
+            "A17",
+        ] {
+            assert!(!speaks_of_a_unit(thing), "{thing}");
+        }
+    }
+}
