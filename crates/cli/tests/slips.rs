@@ -264,15 +264,23 @@ fn what_is_not_read_is_named_in_text_and_in_json() {
     for name in ["f/b.urdf.gz", "f/c.zip"] {
         fs::write(shell.path(name), "").unwrap();
     }
+    let table = "# samples\nunit,ixx,iyy,izz,Units\nFM-1,1,1,1,kg m2\nFM-2,1,1,1,kg m2\n";
+    fs::write(shell.path("f/d.csv"), table).unwrap();
     let told = shell.done(&["check", "f"], 0);
-    let note = "note: f/a.json:2: 2 keys are not read: colour, material";
-    assert!(told.lines().any(|line| line == note), "{told}");
+    for note in [
+        "note: f/a.json:2: 2 keys are not read: colour, material",
+        "note: f/d.csv:2: 1 column is not read, for cells name things and no units: unit",
+    ] {
+        assert!(told.lines().any(|line| line == note), "{told}");
+    }
     assert!(told.contains("f/b.urdf.gz: it is compressed") && told.contains("f/c.zip"), "{told}");
     assert!(told.contains("2 files passed over"), "{told}");
     let found: Value =
         serde_json::from_str(&shell.done(&["check", "f", "--format", "json"], 0)).unwrap();
-    let keys =
-        serde_json::json!([{ "file": "f/a.json", "line": 2, "keys": ["colour", "material"] }]);
+    let keys = serde_json::json!([
+        { "file": "f/a.json", "line": 2, "keys": ["colour", "material"] },
+        { "file": "f/d.csv", "line": 2, "keys": ["unit"] },
+    ]);
     assert_eq!(found["unread_keys"], keys, "{found}");
     assert_eq!(found["summary"]["passed_over"], 2, "{found}");
 

@@ -1,20 +1,24 @@
 //! Tables: one body a row, under a header that names the six entries.
 
+use std::collections::BTreeSet;
+
 use crate::{
     FileBody, FileBodyError, FileProblem, MAX_BODIES, Products,
     body::{ENTRIES, Number, Reading},
     error::Refusal,
+    gap::Gaps,
     products_comment::stated_products,
     summary_row::is_summary,
     table_header::{BELOW, FIELDS, MASS, NAME, PRODUCTS, find_header},
     text::Text,
 };
 
-pub(crate) fn read(text: &Text, default: Products) -> Result<Vec<FileBody>, Refusal> {
+pub(crate) fn read(text: &Text, default: Products) -> Result<(Vec<FileBody>, Gaps), Refusal> {
     let (header, mut rows) = find_header(text)?;
     let products = stated_products(text)?.unwrap_or(default);
 
     let mut bodies = Vec::new();
+    let mut things = BTreeSet::new();
     while let Some(row) = rows.next() {
         let row = row.map_err(|error| error.of(text))?;
         let line = text.line(row.first().map_or(0, |field| field.start));
@@ -34,13 +38,22 @@ pub(crate) fn read(text: &Text, default: Products) -> Result<Vec<FileBody>, Refu
             Err(FileBodyError::Count { field: "the row", found, allowed })
         };
         let reading = reading.map(|reading| reading.in_units(header.mass_kg, header.inertia_kg_m2));
+        things.extend(header.things(text, &row));
         // In the column of names, or the first one, as of an index.
         let first = row.first().map(|field| field.of(text.as_str()));
         let labels = [cell(NAME).map(|(name, _)| name), first];
         let summary = labels.into_iter().flatten().map(str::trim).find(|cell| is_summary(cell));
         bodies.push(FileBody::new(name, line, reading).summing_up(summary));
     }
-    Ok(bodies)
+    let mut gaps = Gaps::default();
+    if !things.is_empty() {
+        let line = text.line(header.row.first().map_or(0, |field| field.start));
+        gaps.add_things(
+            line,
+            things.iter().filter_map(|at| header.heading(text, *at)).map(str::to_owned).collect(),
+        );
+    }
+    Ok((bodies, gaps))
 }
 
 fn reading<'a>(
@@ -75,7 +88,7 @@ fn reading<'a>(
 mod tests {
     use super::*;
     fn try_read(csv: &str) -> Result<Vec<FileBody>, Refusal> {
-        read(&Text::new(csv.as_bytes(), true).unwrap(), Products::TensorEntries)
+        read(&Text::new(csv.as_bytes(), true).unwrap(), Products::TensorEntries).map(|read| read.0)
     }
 
     fn six(body: &FileBody) -> [f64; 6] {

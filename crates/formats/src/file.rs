@@ -205,7 +205,7 @@ fn parse(
         return Err(FileProblem::TooLarge { limit: MAX_TOML_BYTES }.into());
     }
     let (format, (bodies, gaps)) = match like {
-        "csv" => (Format::Csv, (csv::read(&text, products)?, Gaps::default())),
+        "csv" => (Format::Csv, csv::read(&text, products)?),
         "toml" => (Format::Toml, data::toml(&text, products)?),
         "json" => (Format::Json, data::json(&text, products)?),
         _ => {

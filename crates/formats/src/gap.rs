@@ -20,6 +20,8 @@ pub enum GapKind {
     Misplaced,
     /// Keys of bodies, and of the document around them, that mean nothing here, as files of other programs have.
     Keys,
+    /// A column of units in a table that names things, as those of a series.
+    Things,
 }
 
 /// Parts of one kind that were not read.
@@ -60,7 +62,7 @@ impl Gap {
         &self.files
     }
 
-    /// The keys that are not read, each once, in the order of the file.
+    /// The keys that are not read, each once, in the order of the file, or the headings of the columns.
     #[must_use]
     pub fn keys(&self) -> &[String] {
         &self.keys
@@ -75,7 +77,7 @@ impl Gap {
             | GapKind::Included
             | GapKind::Computed
             | GapKind::Misplaced => true,
-            GapKind::Keys => false,
+            GapKind::Keys | GapKind::Things => false,
         }
     }
 
@@ -89,7 +91,8 @@ impl Gap {
             | GapKind::Included
             | GapKind::Computed
             | GapKind::Misplaced
-            | GapKind::Keys => false,
+            | GapKind::Keys
+            | GapKind::Things => false,
         }
     }
 }
@@ -134,6 +137,16 @@ impl fmt::Display for Gap {
                 write!(f, "{} {is} not read: {}", self.keys.len(), named.join(", "))?;
                 if rest.is_empty() { Ok(()) } else { write!(f, " and {} more", rest.len()) }
             }
+            GapKind::Things => {
+                let named: Vec<String> = self.keys.iter().map(|key| shortened(key)).collect();
+                let is = if self.keys.len() == 1 { "column is" } else { "columns are" };
+                write!(
+                    f,
+                    "{} {is} not read, for cells name things and no units: {}",
+                    self.keys.len(),
+                    named.join(", ")
+                )
+            }
         }
     }
 }
@@ -165,6 +178,12 @@ impl Gaps {
     /// Adds keys that are not read, each once, and the line of the first.
     pub(crate) fn add_keys(&mut self, line: usize, keys: Vec<String>) {
         let (kind, count) = (GapKind::Keys, keys.len());
+        self.0.push(Gap { kind, line, count, files: Vec::new(), keys });
+    }
+
+    /// Adds columns that name things, by their headings, and the line of the header.
+    pub(crate) fn add_things(&mut self, line: usize, keys: Vec<String>) {
+        let (kind, count) = (GapKind::Things, keys.len());
         self.0.push(Gap { kind, line, count, files: Vec::new(), keys });
     }
 

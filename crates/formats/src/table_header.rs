@@ -7,7 +7,7 @@ use crate::{
     heading_sign::without_sign,
     parts::{Unread, heading::is_spread},
     product_heading::is_unread_product,
-    rows::{Field, Rows, headers, without_marks},
+    rows::{Field, Rows, headers, is_blank, without_marks},
     spread,
     table_terms::{InertiaPoint, TableTerms},
     ten_heading::{TenCentre, TenHeading},
@@ -102,16 +102,37 @@ impl Header {
         judge: impl Fn(Unread, &str, &str, &TableTerms) -> Option<FileBodyError>,
     ) -> Option<(Field, FileBodyError)> {
         self.unread.iter().find_map(|(at, what)| {
-            let (heading, field) = (self.row.get(*at)?, row.get(*at)?);
-            let [heading, cell] = [heading, field].map(|field| field.of(text.as_str()).trim());
-            // A unit may also be a thing that was made: unit FM-1 of a series.
-            let is_thing = *what == Unread::Unit
-                && ["unit", "units"].contains(&squeezed(heading).as_str())
-                && !speaks_of_a_unit(cell);
-            let error = if is_thing { None } else { judge(*what, heading, cell, &self.terms) };
+            let field = row.get(*at)?;
+            let (heading, cell) = (self.heading(text, *at)?, field.of(text.as_str()).trim());
+            let error = if is_thing(*what, heading, cell) {
+                None
+            } else {
+                judge(*what, heading, cell, &self.terms)
+            };
             error.map(|error| (*field, error))
         })
     }
+
+    /// What stands above a column.
+    pub(crate) fn heading<'t>(&self, text: &'t Text, at: usize) -> Option<&'t str> {
+        self.row.get(at).map(|field| field.of(text.as_str()).trim())
+    }
+
+    /// The columns of units in which a row names a thing.
+    pub(crate) fn things(&self, text: &Text, row: &[Field]) -> impl Iterator<Item = usize> {
+        self.unread.iter().filter_map(move |(at, what)| {
+            let cell = row.get(*at)?.of(text.as_str()).trim();
+            let names_one = cell.contains(char::is_alphanumeric) && !is_blank(cell);
+            (names_one && is_thing(*what, self.heading(text, *at)?, cell)).then_some(*at)
+        })
+    }
+}
+
+/// Whether a cell is passed over: a unit may also be a thing that was made, unit FM-1 of a series.
+fn is_thing(what: Unread, heading: &str, cell: &str) -> bool {
+    what == Unread::Unit
+        && ["unit", "units"].contains(&squeezed(heading).as_str())
+        && !speaks_of_a_unit(cell)
 }
 
 /// What a column of a table of bodies would change, if it does: what else a list of parts must not have may be anything here, as the

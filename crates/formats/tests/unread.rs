@@ -1,6 +1,8 @@
 //! Columns that say that the inertia of a row is another one: whoever reads the table refuses them, or reads the same numbers.
 
-use gyradius_formats::{FileBodyError, InertiaFile, PartsTable, Products, TenCentre, TenTable};
+use gyradius_formats::{
+    FileBodyError, GapKind, InertiaFile, PartsTable, Products, TenCentre, TenTable,
+};
 use proptest::{prelude::*, sample::select};
 use std::path::Path;
 
@@ -200,6 +202,13 @@ fn units_of_a_series_are_no_units_of_inertia() {
                     .unwrap();
             let is_read = file.bodies().iter().all(|body| body.inertia().is_ok());
             assert_eq!(is_read, is_thing, "{heading} {cell}");
+            // The column is not passed over without a word.
+            let told: Vec<_> =
+                file.gaps().iter().map(|gap| (gap.kind(), gap.line(), gap.keys())).collect();
+            let keys = [heading.to_owned()];
+            let expected =
+                if is_thing { vec![(GapKind::Things, 1, &keys[..])] } else { Vec::new() };
+            assert_eq!(told, expected, "{heading} {cell}");
         }
     }
 }

@@ -3,8 +3,8 @@
 use gyradius_dispersion::TenParameters;
 use gyradius_estimation::TenForm;
 use gyradius_formats::{
-    FileBody, FileBodyError, FileError, Format, InertiaFile, LinkProblem, Products, RobotError,
-    RobotFile, TOLERANCE, TenCentre, TenRow, TenTable, TenTableError, judge,
+    FileBody, FileBodyError, FileError, Format, GapKind, InertiaFile, LinkProblem, Products,
+    RobotError, RobotFile, TOLERANCE, TenCentre, TenRow, TenTable, TenTableError, judge,
 };
 use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties, Repair, RepairMethod};
 use nalgebra::Matrix3;
@@ -102,8 +102,9 @@ pub(super) fn read(
 ) -> Result<Table, TableError> {
     let file = InertiaFile::read(path, products)?;
     let place = path.display().to_string();
-    let gaps = file.gaps().iter().map(|gap| format!("line {}: {gap}", gap.line()));
-    let gaps: Vec<String> = gaps.collect();
+    // Columns are among those of which nothing was taken.
+    let gaps = file.gaps().iter().filter(|gap| gap.kind() != GapKind::Things);
+    let gaps: Vec<String> = gaps.map(|gap| format!("line {}: {gap}", gap.line())).collect();
     let given = match file.format() {
         Format::Urdf | Format::Mjcf | Format::Sdf => of_links(file, &place, form)?,
         Format::Csv | Format::Toml | Format::Json => of_rows(&file, &place, form)?,
