@@ -250,7 +250,7 @@ fn header(text: &Text, row: &[Field], below: Option<&[Field]>) -> Result<Option<
     if products == 0 {
         let is_like = |field: &&Field| {
             let heading = field.of(text.as_str());
-            !is_spread(heading) && is_unread_product(heading)
+            !is_spread(heading) && would_change(heading).is_none() && is_unread_product(heading)
         };
         if let Some(field) = row.iter().find(is_like) {
             let heading = shortened(field.of(text.as_str()));

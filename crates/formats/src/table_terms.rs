@@ -1,6 +1,9 @@
 //! What holds for all rows of a table, which a cell may say again but not change.
 
-use crate::units::{Dimension, Unit};
+use crate::{
+    body::entry_of,
+    units::{Dimension, Unit},
+};
 
 /// What the columns of a table say of all its rows.
 #[derive(Debug, Default)]
@@ -87,10 +90,14 @@ fn is_same(one: f64, other: f64) -> bool {
 /// What a word of a heading speaks of.
 pub(crate) fn dimension_of(word: &str) -> Option<Dimension> {
     match word {
-        "mass" | "masses" | "weight" => Some(Dimension::Mass),
-        "length" | "lengths" | "distance" | "dimension" | "dimensions" | "size" | "sizes"
-        | "centre" | "center" | "cg" | "com" => Some(Dimension::Length),
-        "inertia" | "inertias" | "moments" | "products" | "moi" | "poi" => Some(Dimension::Inertia),
-        _ => None,
+        "mass" | "masses" | "weight" | "weights" => Some(Dimension::Mass),
+        "length" | "lengths" | "distance" | "distances" | "dimension" | "dimensions" | "size"
+        | "sizes" | "centre" | "center" | "cg" | "cog" | "com" | "cx" | "cy" | "cz" => {
+            Some(Dimension::Length)
+        }
+        "inertia" | "inertias" | "moment" | "moments" | "product" | "products" | "moi" | "mois"
+        | "poi" | "pois" | "tensor" | "i" => Some(Dimension::Inertia),
+        // `Ixx`, and what is left of `I_xx`.
+        _ => [word, &format!("i{word}")].into_iter().find_map(entry_of).map(|_| Dimension::Inertia),
     }
 }

@@ -31,7 +31,15 @@ fn unit_of_each() -> impl Strategy<Value = Units> {
 }
 
 /// Headings of a column of units, and which of the three they are of, if they say.
-const HEADINGS: [(&str, Option<usize>); 9] = [
+const HEADINGS: [(&str, Option<usize>); 17] = [
+    ("Ixx units", Some(2)),
+    ("ixx_unit", Some(2)),
+    ("I unit", Some(2)),
+    ("Unit I_xy", Some(2)),
+    ("cx unit", Some(1)),
+    ("u.o.m.", None),
+    ("U/M", None),
+    ("Unit of measure", None),
     ("unit", None),
     ("UOM", None),
     ("units of mass and inertia", None),

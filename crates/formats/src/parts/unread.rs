@@ -33,7 +33,11 @@ const INERTIAS: [&str; 5] = ["inertia", "inertias", "moi", "moments", "products"
 
 const KINDS: [Words; 8] = [
     // Before counts: `units` alone are those of the row.
-    (Unread::Unit, &[&["unit", "units", "uom"]], &["of", "for", "the", "and"]),
+    (
+        Unread::Unit,
+        &[&["unit", "units", "uom"]],
+        &["of", "for", "the", "and", "in", "used", "system", "measure", "measurement"],
+    ),
     // A `part number` names a part, and a `number of parts` counts it.
     (Unread::Count, &[&["number", "num"]], &[]),
     (
@@ -160,7 +164,8 @@ const NONE: [&str; 9] = ["-", "--", "–", "—", "none", "nil", "zero", "n/a", 
 impl Unread {
     /// What a heading holds of this kind.
     pub(crate) fn of(heading: &str) -> Option<Self> {
-        let lower = heading.to_lowercase();
+        // What is written with marks between its letters is one word.
+        let lower = heading.to_lowercase().replace("u.o.m", "uom").replace("u/m", "uom");
         let all: Vec<&str> = words(&lower).filter(|word| !word.is_empty()).collect();
         let is_of = |(kind, lists, beside): &&Words| {
             let mut rest = all.iter();
@@ -309,6 +314,15 @@ mod tests {
             ("length unit", Unread::Unit),
             ("inertia_units", Unread::Unit),
             ("unit of mass", Unread::Unit),
+            ("Ixx units", Unread::Unit),
+            ("ixx_unit", Unread::Unit),
+            ("I_yz units", Unread::Unit),
+            ("I unit", Unread::Unit),
+            ("u.o.m.", Unread::Unit),
+            ("U/M", Unread::Unit),
+            ("MOI (UoM)", Unread::Unit),
+            ("Unit of measure", Unread::Unit),
+            ("system of units", Unread::Unit),
             ("Number of parts", Unread::Count),
             ("n_parts", Unread::Count),
             ("No. of items per assembly", Unread::Count),
