@@ -126,20 +126,33 @@ impl Hull {
     }
 
     /// The least of the conditions ∫ (h − n·x)(n·x + h') dm ≥ 0, over what it would be with all mass in the middle, of a
-    /// mass centre and Σ_c/m.
-    pub(super) fn room(&self, centre: &Vector3<f64>, spread: &Matrix3<f64>) -> f64 {
-        let least = (RELATIVE_TOLERANCE * self.size).powi(2);
+    /// mass centre and Σ_c/m = Σ_k r_k² a_k a_kᵀ with axes a_k and radii r_k.
+    pub(super) fn room(
+        &self,
+        centre: &Vector3<f64>,
+        axes: &Matrix3<f64>,
+        radii: &Vector3<f64>,
+    ) -> f64 {
+        // Rounding of Σ_c/m by ε tr Σ_c/m in any direction changes r_k a_k by half of it over r_k. Across what is flat, a share
+        // of the trace would be far more than all that there is.
+        let trace = radii.norm_squared();
+        let arms =
+            [0, 1, 2].map(|k| (axes.column(k) * radii[k], RELATIVE_TOLERANCE * trace / radii[k]));
         let between = |(n, [low, high]): &(Vector3<f64>, [f64; 2])| {
             let at = n.dot(centre);
             // Of what is flat the middle is as far as rounding goes.
             let rounding = RELATIVE_TOLERANCE * (self.size + centre.norm());
             let (low, high) = (low - at - rounding, high - at + rounding);
-            let quarter = (0.5 * (high - low)).powi(2).max(least).max(f64::MIN_POSITIVE);
+            let quarter = (0.5 * (high - low)).powi(2).max(f64::MIN_POSITIVE);
             if low > 0.0 || high < 0.0 {
                 // The mass centre is outside.
                 return -low.max(-high) * low.abs().max(high.abs()) / quarter;
             }
-            (-low * high - n.dot(&(spread * n))) / quarter
+            let along = |(arm, rounding): &(Vector3<f64>, f64)| {
+                // Without a radius the rounding is infinite or, of a point, none.
+                (n.dot(arm).abs() - rounding).max(0.0).powi(2)
+            };
+            (-low * high - arms.iter().map(along).sum::<f64>()) / quarter
         };
         self.reach.iter().map(between).fold(f64::INFINITY, f64::min)
     }

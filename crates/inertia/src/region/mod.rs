@@ -199,7 +199,7 @@ impl Region {
             Kind::Hull(hull) => {
                 let (outer, size) = (hull.outer(), hull.size());
                 let local = Local::of(body, &Isometry3::identity());
-                if hull.room(&local.centre, &local.spread) < -RELATIVE_TOLERANCE {
+                if hull.room(&local.centre, &local.axes, &local.radii) < -RELATIVE_TOLERANCE {
                     return Containment::Impossible;
                 }
                 let inside = |x: &Vector3<f64>| hull.holds(x);
@@ -261,7 +261,7 @@ impl Region {
             Kind::Box { pose, half_sides } => Local::of(body, pose).room_in_box(half_sides),
             Kind::Hull(hull) => {
                 let local = Local::of(body, &Isometry3::identity());
-                hull.room(&local.centre, &local.spread)
+                hull.room(&local.centre, &local.axes, &local.radii)
             }
         }
     }

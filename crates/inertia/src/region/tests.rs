@@ -23,8 +23,11 @@ fn any_pose() -> impl Strategy<Value = Isometry3<f64>> {
         .prop_map(|(q, t)| Isometry3::from_parts(Vector3::from(t).into(), q))
 }
 
+/// Masses and where they are.
+type Masses = Vec<(f64, Vector3<f64>)>;
+
 /// Masses on the unit cube.
-fn any_masses() -> impl Strategy<Value = Vec<(f64, Vector3<f64>)>> {
+fn any_masses() -> impl Strategy<Value = Masses> {
     let coordinate = prop_oneof![Just(-1.0), Just(1.0), -1.0..1.0f64];
     let place = prop::array::uniform3(coordinate).prop_map(Vector3::from);
     prop::collection::vec((0.1..3.0f64, place), 1..9)
@@ -184,7 +187,66 @@ proptest! {
     }
 }
 
-/// How many bodies with matter in a box stay undecided: few.
+/// Points in the unit cube, a pose and half sides of which one at least is no less than 1: rods, plates, and slabs and needles of any
+/// thickness, far away and near, turned and not, and places in their hull.
+fn any_thin() -> impl Strategy<Value = (Vector3<f64>, Isometry3<f64>, Vec<Vector3<f64>>, Masses)> {
+    let thin = prop_oneof![Just(0.0), Just(1.0), (-16.0..0.0f64).prop_map(|e| 10f64.powf(e))];
+    let half =
+        (prop::array::uniform2(thin), 1.0..3.0f64, 0..3usize).prop_map(|([a, b], wide, first)| {
+            let mut half = [wide, a, b];
+            half.rotate_right(first);
+            Vector3::from(half)
+        });
+    let turn = prop_oneof![Just(UnitQuaternion::identity()), any_attitude()];
+    let far = prop_oneof![Just(0.0), (-3.0..6.0f64).prop_map(|e| 10f64.powf(e))];
+    let pose = (turn, prop::array::uniform3(-1.0..1.0f64), far)
+        .prop_map(|(q, t, far)| Isometry3::from_parts((Vector3::from(t) * far).into(), q));
+    let coordinate = || prop_oneof![Just(-1.0), Just(1.0), -1.0..1.0f64];
+    let place = prop::array::uniform3(coordinate()).prop_map(Vector3::from);
+    let shares = prop::collection::vec(prop_oneof![Just(0.0), 1e-3..1.0f64], 9);
+    let masses = prop::collection::vec((0.1..3.0f64, shares, any::<prop::sample::Index>()), 1..6);
+    (half, pose, prop::collection::vec(place, 2..9), masses).prop_map(
+        |(half, pose, corners, masses)| {
+            let inside = masses.iter().map(|(mass, shares, alone)| {
+                let total: f64 = shares[..corners.len()].iter().sum();
+                let mean = corners.iter().zip(shares).map(|(x, w)| x * (w / total)).sum();
+                (*mass, if total > 0.0 { mean } else { *alone.get(&corners) })
+            });
+            let inside = inside.collect();
+            (half, pose, corners, inside)
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    /// Matter in a rod, a plate or a slab is never called impossible, however thin, far away and tilted it is, and matter that lies off
+    /// it by more than rounding always is.
+    #[test]
+    fn thin_hulls_hold_their_own_matter_alone(
+        (half, pose, corners, masses) in any_thin(),
+        (by, axis) in (-5.0..1.0f64, 0..3usize),
+    ) {
+        let at = |x: &Vector3<f64>| (pose * nalgebra::Point3::from(x.component_mul(&half))).coords;
+        let region = Region::hull(&corners.iter().map(|x| at(x).into()).collect::<Vec<_>>()).unwrap();
+        let inside: Vec<_> = masses.iter().map(|(m, x)| (*m, at(x))).collect();
+        let body = points(&inside);
+        let room = region.room(&body);
+        prop_assert!(region.containment(&body) != Containment::Impossible && room > -1e-13, "{room}");
+        // All of it off to one side, and as far to both sides.
+        let mut off = Vector3::zeros();
+        off[axis] = 10f64.powf(by) * half.max() + 3.0 * half[axis] + 1e-9 * pose.translation.vector.norm();
+        let off = pose.rotation * off;
+        let aside: Vec<_> = inside.iter().map(|(m, x)| (*m, x + off)).collect();
+        let sides = inside.iter().flat_map(|(m, x)| [(*m, x + off), (*m, x - off)]).collect::<Vec<_>>();
+        for outside in [aside, sides] {
+            let body = points(&outside);
+            prop_assert_eq!(region.containment(&body), Containment::Impossible, "{}", region.room(&body));
+        }
+    }
+}
+
 /// Random numbers between 0 and 1.
 fn uniform() -> impl FnMut() -> f64 {
     let mut state = 1u64;
@@ -242,6 +304,7 @@ fn the_last_bit_of_a_plate_does_not_decide() {
     assert!(thick > 5, "{thick}");
 }
 
+/// How many bodies with matter in a box stay undecided: few.
 #[test]
 fn few_bodies_stay_undecided() {
     let region = Region::solid_box([0.0; 3], [1.0, 0.5, 0.25]).unwrap();
