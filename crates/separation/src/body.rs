@@ -155,6 +155,7 @@ pub struct BodyState {
     #[cfg_attr(feature = "serde", serde(rename = "velocity_m_per_s"))]
     pub velocity: Vector3<f64>,
     /// Takes body components to inertial components.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "read_attitude"))]
     pub attitude: UnitQuaternion<f64>,
     /// Angular velocity, body axes, rad/s.
     #[cfg_attr(feature = "serde", serde(rename = "angular_velocity_rad_per_s"))]
@@ -287,6 +288,21 @@ impl MovingBody {
     }
 }
 
+/// An attitude of norm 1 to 1e-9, as it is: momenta and velocities of points are wrong with any other, and a state that
+/// is read is not [checked](BodyState::checked) unless a separation starts from it.
+#[cfg(feature = "serde")]
+fn read_attitude<'de, D>(from: D) -> Result<UnitQuaternion<f64>, D::Error>
+where
+    D: serde::Deserializer<'de>,
+{
+    let read = <UnitQuaternion<f64> as serde::Deserialize>::deserialize(from)?;
+    let norm = read.norm();
+    if !((norm - 1.0).abs() < 1e-9) {
+        return Err(serde::de::Error::custom(BodyError::Attitude { norm }));
+    }
+    Ok(read)
+}
+
 /// The serialized form of a body.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
@@ -374,5 +390,39 @@ mod tests {
         assert_eq!(serde_json::from_str::<MovingBody>(&json).unwrap(), moving);
         let error = serde_json::from_str::<MovingBody>(&json.replace("7.0", "-7.0")).unwrap_err();
         assert!(error.to_string().starts_with("mass = -7.0 kg"), "{error}");
+    }
+
+    #[cfg(feature = "serde")]
+    proptest::proptest! {
+        /// An attitude of any length but one is refused in a state and in all that holds one; any other comes back as it was.
+        #[test]
+        fn attitudes_that_are_read_are_of_norm_one(
+            q in proptest::array::uniform4(-1.0..1.0f64),
+            off in proptest::prop_oneof![-8.5..3.0f64, proptest::strategy::Just(f64::NEG_INFINITY)],
+        ) {
+            let q = nalgebra::Quaternion::from(nalgebra::Vector4::from(q));
+            proptest::prop_assume!(q.norm() > 0.1);
+            let unit = UnitQuaternion::new_normalize(q);
+            let scale = 1.0 + 10f64.powf(off);
+            let inertia = InertiaMatrix::from_entries([2.0, 3.0, 4.0], [0.0; 3]).unwrap();
+            for scale in [scale, scale.recip()] {
+                let attitude = UnitQuaternion::new_unchecked(unit.into_inner() * scale);
+                let state = BodyState { attitude, ..BodyState::default() };
+                let moving = Body::new(7.0, inertia).unwrap().moving(state);
+                let read = [
+                    serde_json::from_str(&serde_json::to_string(&state).unwrap()),
+                    serde_json::from_str::<MovingBody>(&serde_json::to_string(&moving).unwrap())
+                        .map(|moving| moving.state),
+                ];
+                for read in read {
+                    if scale == 1.0 {
+                        proptest::prop_assert_eq!(read.unwrap(), state);
+                    } else {
+                        let error = read.unwrap_err().to_string();
+                        proptest::prop_assert!(error.starts_with("attitude quaternion of norm "), "{error}");
+                    }
+                }
+            }
+        }
     }
 }
