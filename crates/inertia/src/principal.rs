@@ -25,6 +25,7 @@ const TIE: f64 = 1e-12;
 #[getset(get_copy = "pub")]
 pub struct PrincipalAxes {
     /// Principal moments of inertia I₁, I₂, I₃, in kg·m².
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::read::principal_moments"))]
     moments: [f64; 3],
     /// The attitude q that takes body components to principal components.
     #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::read::unit"))]
@@ -356,6 +357,34 @@ mod tests {
             let near = 5.0 + 10f64.powf(exponent);
             let body = InertiaMatrix::from_entries([5.0, near, 3.0], [0.0; 3]).unwrap().rotated(&q).unwrap();
             prop_assert!((reconstruct(&body.principal_axes()) - body.matrix()).amax() < 2e-13);
+        }
+    }
+
+    #[cfg(feature = "serde")]
+    proptest! {
+        /// The axes of any matrix come back as they were, up to its largest entries, and what is read has finite second moments.
+        #[test]
+        fn what_is_read_is_what_a_matrix_can_have(
+            shares in prop::array::uniform6(prop_oneof![Just(1.0), Just(-1.0), -1.0..1.0f64]),
+            moments in prop::array::uniform3((prop_oneof![300.0..308.25f64, -3.0..3.0f64], any::<bool>())),
+        ) {
+            let [a, b, c, d, e, f] = shares.map(|share| share * crate::MAX_ENTRY);
+            let own = axes_of([a, b, c], [d, e, f]);
+            let read = serde_json::from_str::<PrincipalAxes>(&serde_json::to_string(&own).unwrap());
+            prop_assert_eq!(read.unwrap(), own);
+            let moments = moments.map(|(e, is_negative)| 10f64.powf(e) * if is_negative { -1.0 } else { 1.0 });
+            let any = PrincipalAxes { moments, ..own };
+            let is_too_large = moments.iter().any(|moment| moment.abs() > 4.0 * crate::MAX_ENTRY);
+            match serde_json::from_str::<PrincipalAxes>(&serde_json::to_string(&any).unwrap()) {
+                Ok(read) => {
+                    prop_assert!(!is_too_large && read == any);
+                    prop_assert!(read.second_moments().iter().all(|k| k.is_finite()));
+                }
+                Err(error) => {
+                    let error = error.to_string();
+                    prop_assert!(is_too_large && error.starts_with("principal moment = "), "{error}");
+                }
+            }
         }
     }
 }

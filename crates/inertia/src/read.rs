@@ -35,10 +35,22 @@ pub(crate) fn unit<'de, D: Deserializer<'de>>(from: D) -> Result<UnitQuaternion<
     let norm = read.norm();
     if !((norm - 1.0).abs() < 1e-9) {
         return Err(D::Error::custom(format!(
-            "a quaternion of norm {norm:?}: it must have norm 1"
+            "attitude quaternion of norm {norm:?}: it must have norm 1"
         )));
     }
     Ok(UnitQuaternion::new_unchecked(read))
+}
+
+/// Principal moments, of any sign, that are not above what a matrix can have: three times its largest entry, and rounding.
+pub(crate) fn principal_moments<'de, D: Deserializer<'de>>(from: D) -> Result<[f64; 3], D::Error> {
+    const MOST: f64 = 4.0 * crate::MAX_ENTRY;
+    let read = <[f64; 3]>::deserialize(from)?;
+    if let Some(moment) = read.iter().find(|moment| !(moment.abs() <= MOST)) {
+        return Err(D::Error::custom(format!(
+            "principal moment = {moment:e} kg·m²: it must be finite and at most {MOST:.1e} in magnitude"
+        )));
+    }
+    Ok(read)
 }
 
 /// A number that is finite and not negative.
