@@ -133,7 +133,9 @@ impl ScalarLaw {
         Self(law.into())
     }
 
-    /// The value at a standard normal score: it does not fall where the score rises, but for rounding by 1e-14 of itself.
+    /// The value at a standard normal score. It does not fall where the score rises, but for rounding: by 1e-14 of the largest
+    /// magnitude that it has at this score and at scores of ±9. Near a bound that is small beside that, a truncated normal law has
+    /// the digits of the value itself, to 1e-13.
     #[must_use]
     pub fn at_score(&self, z: f64) -> f64 {
         let x = if z.is_nan() { z } else { self.0.at_score(z) };

@@ -19,6 +19,9 @@ const NEGLIGIBLE: f64 = 60.0;
 const FAR_OFF: f64 = 1e6;
 /// Up to this width one panel of the rule is exact to rounding, and differences of Φ are not.
 const NARROW: f64 = 0.5;
+/// Below this share of the anchor, or of a deviation, a value that is found as a sum of the anchor and a distance from it has
+/// lost digits: the sum is rounded to 1e-16 of the anchor, and the distance found to 1e-15 of a deviation.
+const SMALL: f64 = 1.0 / 16.0;
 
 /// N(k̄, σ²) kept to [low, high].
 ///
@@ -37,6 +40,26 @@ pub(crate) struct TruncatedNormal {
     ends: [f64; 2],
     /// ∫ exp(−v (offset + v/2)) dv over the window.
     whole: f64,
+}
+
+/// An end of a window from which masses are told by the distance: as a difference of two v, a small one would lose its digits.
+struct End {
+    v: f64,
+    inwards: f64,
+}
+
+impl End {
+    /// The density of v at a distance over its value at the anchor.
+    fn density(&self, window: &TruncatedNormal, distance: f64) -> f64 {
+        libm::exp(window.ln_density(self.v + self.inwards * distance))
+    }
+
+    /// Its integral up to a small distance.
+    fn mass(&self, window: &TruncatedNormal, distance: f64) -> f64 {
+        let mut sum = 0.0;
+        panel(0.0, distance, |u, weight| sum += weight * self.density(window, u));
+        sum
+    }
 }
 
 /// Why bounds are refused.
@@ -171,19 +194,20 @@ impl TruncatedNormal {
         self.share_beside(x, self.bounds[1] - x, self.sign > 0.0)
     }
 
+    /// The end of the largest v, or of the smallest, where it is a bound of the law and so near that one panel is exact.
+    fn end_within(&self, distance: f64, is_largest: bool) -> Option<End> {
+        let [from, to] = self.ends;
+        let (v, inwards) = if is_largest { (to, -1.0) } else { (from, 1.0) };
+        (distance <= NARROW.min(to - from) && v.abs() < END).then_some(End { v, inwards })
+    }
+
     /// The share between x and the bound from which it is so far: that of the largest v, or of the smallest.
     fn share_beside(&self, x: f64, distance: f64, is_largest: bool) -> f64 {
         let [low, high] = self.bounds;
         let [from, to] = self.ends;
-        let (end, inwards) = if is_largest { (to, -1.0) } else { (from, 1.0) };
         let distance = distance.max(0.0) / self.deviation;
-        let mass = if distance <= NARROW.min(to - from) && end.abs() < END {
-            // As a difference of two v, a small distance would lose its digits.
-            let mut sum = 0.0;
-            panel(0.0, distance, |u, weight| {
-                sum += weight * libm::exp(self.ln_density(end + inwards * u));
-            });
-            sum
+        let mass = if let Some(end) = self.end_within(distance, is_largest) {
+            end.mass(self, distance)
         } else {
             let v =
                 (self.sign * (x.clamp(low, high) - self.anchor) / self.deviation).clamp(from, to);
@@ -241,7 +265,40 @@ impl TruncatedNormal {
                 break;
             }
         }
-        self.value(v)
+        let x = self.value(v);
+        self.near_bound(x, !rising, target).unwrap_or(x)
+    }
+
+    /// The value between which and the bound of the largest v, or of the smallest, `target` of the mass lies, from a first guess
+    /// of it. None unless both are small beside the anchor or the deviation: other values have their digits, and stay as they are.
+    fn near_bound(&self, x: f64, is_largest: bool, target: f64) -> Option<f64> {
+        let is_high = is_largest == (self.sign > 0.0);
+        let bound = self.bounds[usize::from(is_high)];
+        let gap = (x - bound).abs();
+        let scale = self.deviation * (self.ends[1] - self.ends[0]).min(1.0);
+        if !(x.abs() + gap < SMALL * self.anchor.abs().max(scale)) {
+            return None;
+        }
+        let mut distance = gap / self.deviation;
+        let end = self.end_within(distance, is_largest)?;
+        // In proportion to the mass, which brings a guess near however small the distance is, and then by Newton's iteration.
+        let guessed = end.mass(self, distance);
+        distance = if guessed > 0.0 {
+            distance * (target / guessed)
+        } else {
+            target / end.density(self, 0.0)
+        };
+        for _ in 0..8 {
+            let excess = end.mass(self, distance) - target;
+            let next = (distance - excess / end.density(self, distance)).max(0.0);
+            let done = (next - distance).abs() <= 1e-16 * next;
+            distance = next;
+            if done {
+                break;
+            }
+        }
+        let inwards = if is_high { -self.deviation } else { self.deviation };
+        Some((bound + inwards * distance).clamp(self.bounds[0], self.bounds[1]))
     }
 
     /// ∫ exp(−v (offset + v/2)) dv.

@@ -142,6 +142,54 @@ proptest! {
     }
 }
 
+/// A window on one side of zero, of which a bound is zero or small beside the mean or the deviation.
+fn any_window_beside_zero() -> impl Strategy<Value = [f64; 4]> {
+    let low = prop_oneof![Just(0.0), (-30.0..-1.0f64).prop_map(|e| 10f64.powf(e))];
+    let width = prop_oneof![Just(INF), (-2.0..2.0f64).prop_map(|e| 10f64.powf(e))];
+    (low, width, -1.3..6.0f64, -1.5..1.5f64, any::<bool>()).prop_map(
+        |(low, width, place, deviation, mirrored)| {
+            let deviation = 10f64.powf(deviation);
+            let mean = if place > 0.0 { place * deviation } else { low + place * 4.0 * deviation };
+            // No farther out than is allowed.
+            let high = (low + width).max(mean - 5.9 * deviation);
+            if mirrored { [-mean, deviation, -high, -low] } else { [mean, deviation, low, high] }
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(3000))]
+
+    /// Near a bound that is small beside the mean, values have all their digits: they do not fall by more than 1e-13 of
+    /// themselves where scores rise, and their shares are those of the scores.
+    #[test]
+    fn values_near_a_small_bound_keep_their_digits(
+        case in any_window_beside_zero(),
+        scores in prop::collection::vec(-38.0..9.0f64, 10),
+        near in prop::collection::vec((-10.0..1.0f64, 1e-12..1e-2f64), 20),
+    ) {
+        let [mean, deviation, low, high] = case;
+        let law = ScalarLaw::truncated_normal(mean, deviation, low, high).unwrap();
+        let mut scores = scores;
+        scores.extend(near.iter().flat_map(|(z, by)| [*z, z + by]));
+        scores.sort_by(f64::total_cmp);
+        // Those that go to the bound that is near zero.
+        let inwards = if high <= 0.0 { -1.0 } else { 1.0 };
+        let values: Vec<f64> = scores.iter().map(|z| law.at_score(inwards * z)).collect();
+        for pair in values.windows(2) {
+            prop_assert!(inwards * (pair[1] - pair[0]) >= -1e-13 * pair[0].abs(), "{case:?} {pair:?}");
+        }
+        let is_small = low.abs().min(high.abs()) < 0.02 * deviation.min(high - low);
+        let tail = |z: f64| is_small && z < -1.0 && z > -37.0;
+        for (z, x) in scores.iter().zip(&values).filter(|(z, _)| tail(**z)) {
+            let share = |x: f64| if inwards > 0.0 { law.cdf(x) } else { law.share_above(x) };
+            let step = share(x.next_up()) - share(x.next_down());
+            let off = (share(*x) - above(-z)).abs();
+            prop_assert!(off <= 2.0 * step.abs() + 1e-11 * above(-z), "{case:?} {z}: {x:e} {off:e} of {:e}", above(-z));
+        }
+    }
+}
+
 /// Kolmogorov and Smirnov's distance below its 1e-4 point: against the law where density falls
 /// exponentially along the window, which is uniform where it is narrow.
 #[test]
