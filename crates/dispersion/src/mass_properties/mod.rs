@@ -7,6 +7,7 @@ mod density_tests;
 mod inside;
 mod law;
 mod log_cholesky_ten;
+mod lognormal;
 mod maximum_entropy;
 mod model;
 mod moments;

@@ -24,7 +24,12 @@ const SHAPE: usize = 4;
 impl MassPropertiesLaw {
     /// Mean and covariance of m, c₁, c₂, c₃ and the six entries of the inertia about the mass centre: in closed form or
     /// by quadrature. None of a law that is kept to a region by rejection, of which
-    /// [`moments_in_region`](Self::moments_in_region) has estimates, or of a model whose own moments are not known.
+    /// [`moments_in_region`](Self::moments_in_region) has estimates, of a model whose own moments are not known, or where a
+    /// moment is too large for a number.
+    ///
+    /// None, too, where lognormal scalars are correlated with scalars of other laws and are so wide, from deviations of about six
+    /// times the mean on, that quadrature does not have their own moments to 1e-3. Lognormal scalars that are correlated with each
+    /// other alone may have any width.
     #[must_use]
     pub fn moments(&self) -> Option<TenMoments> {
         let one = Monomial::default();
@@ -125,7 +130,8 @@ impl MassPropertiesLaw {
                 SVector::<f64, 10>::from_fn(|r, _| if r < 4 { 0.0 } else { cross[r - 4] });
             covariance += entries * maps[i].transpose() + maps[i] * entries.transpose();
         }
-        Some(TenMoments::unchecked(mean, covariance))
+        let are_numbers = mean.iter().chain(&covariance).all(|x| x.is_finite());
+        are_numbers.then(|| TenMoments::unchecked(mean, covariance))
     }
 
     /// What the entries are linear in, and their own moments.
@@ -136,11 +142,14 @@ impl MassPropertiesLaw {
             let mean = moments.map(|k| scores.covariance(&k, &k).0);
             let covariance =
                 nalgebra::Matrix3::from_fn(|i, j| scores.covariance(&moments[i], &moments[j]).1);
+            if !mean.iter().chain(&covariance).all(|x| x.is_finite()) {
+                return None;
+            }
             let statistics = SecondMomentStatistics::joint(mean, covariance);
             let axes = principal.axes.entry_moments(&statistics);
-            (Size::Second(moments, principal.axes.expected_forms()), axes)
+            Some((Size::Second(moments, principal.axes.expected_forms()), axes))
         };
-        Some(match &self.tensor().of {
+        match &self.tensor().of {
             Of::GyrationLengths(principal) => second(principal, Monomial::default().times(MASS, 1)),
             Of::Roots(principal) => second(principal, factor),
             Of::Model(model) => {
@@ -151,8 +160,8 @@ impl MassPropertiesLaw {
                 let covariance =
                     own.covariance() * square + entries * entries.transpose() * variance;
                 let moments = EntryMoments::unchecked((entries * mean).into(), covariance);
-                (Size::Factor(factor, own.mean()), moments)
+                Some((Size::Factor(factor, own.mean()), moments))
             }
-        })
+        }
     }
 }

@@ -501,6 +501,14 @@ impl ScalarLaw {
     }
 }
 
+impl ScalarLaw {
+    /// The mean, and the deviation of the logarithm, if it is lognormal.
+    pub(crate) fn as_lognormal(&self) -> Option<[f64; 2]> {
+        let Kind::Lognormal(Lognormal { mean, log_deviation, .. }) = self.0 else { return None };
+        Some([mean, log_deviation])
+    }
+}
+
 impl Lognormal {
     /// The score of a value, of a law with a deviation; of one that is not positive, −∞.
     fn score(&self, x: f64) -> f64 {
