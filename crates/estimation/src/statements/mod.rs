@@ -1,6 +1,7 @@
 //! A model of inertia made of plain statements: "moments ± 10 %", "axes within 2°", "mass ± 1 %".
 
 mod amount;
+mod curvature;
 mod diagnosis;
 mod entries;
 mod frame;

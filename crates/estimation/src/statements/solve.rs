@@ -34,6 +34,9 @@ const INDEPENDENT: u32 = 16;
 const VERY_WIDE: f64 = 3.0;
 /// Where the nearest of these starts costs less after some steps, what is asked may well be had.
 const WITHIN_REACH: f64 = 0.1;
+/// Starts all about the best, and how far they are from it.
+const ABOUT: u32 = 24;
+const NEAR: [f64; 2] = [1.0, 0.3];
 /// Of these, the best are followed after some steps.
 const FOLLOWED: usize = 8;
 
@@ -193,7 +196,11 @@ impl Unknowns<'_> {
         for _ in 0..AGAIN {
             let before = best.1;
             let around = self.around(&best.0.x);
-            self.improve(&mut best, &around);
+            self.improve_by(Effort::FINE, &mut best, &around);
+            for near in NEAR {
+                let (nearest, _) = self.nearest_about(best.0.x, ABOUT, near);
+                self.improve_by(Effort::FINE, &mut best, &nearest);
+            }
             if best.1 == before {
                 break;
             }
@@ -221,19 +228,28 @@ impl Unknowns<'_> {
 
     /// Where some steps lead from points all over the unknowns: the best of them, and the least of their costs.
     fn nearest(&self, count: u32, wide: f64) -> (Vec<Values>, f64) {
-        let starts = self.anywhere(count, wide);
+        let mut centre = self.guess;
+        if self.open.contains(&ROOTS_BESIDE) {
+            centre[ROOTS..ROOTS_BESIDE].fill(0.0);
+        }
+        self.nearest_about(centre, count, wide)
+    }
+
+    /// The same from points all about this one.
+    fn nearest_about(&self, centre: Values, count: u32, wide: f64) -> (Vec<Values>, f64) {
+        let starts = self.all_about(centre, count, wide);
         let mut found: Vec<_> = starts.map(|x| self.steps(x, Effort::SHORT)).collect();
         found.sort_by(|a, b| a.1.total_cmp(&b.1));
         let least = found.first().map_or(f64::INFINITY, |it| it.1);
         (found.into_iter().take(FOLLOWED).map(|it| it.0.x).collect(), least)
     }
 
-    /// Points all over the open unknowns: multiples of √p, p prime, modulo 1 (Richtmyer 1951).
-    fn anywhere(&self, count: u32, wide: f64) -> impl Iterator<Item = Values> {
+    /// Points of the open unknowns all about this one: multiples of √p, p prime, modulo 1 (Richtmyer 1951).
+    fn all_about(&self, centre: Values, count: u32, wide: f64) -> impl Iterator<Item = Values> {
         const PRIMES: [u16; UNKNOWNS] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41];
         let independent = !self.open.contains(&ROOTS_BESIDE);
         (1..=count).map(move |n| {
-            let mut x = self.guess;
+            let mut x = centre;
             for &i in &self.open {
                 let part = f64::from(n) * f64::from(PRIMES[i]).sqrt();
                 let off = wide * (2.0 * (part - part.floor()) - 1.0);
@@ -241,7 +257,7 @@ impl Unknowns<'_> {
                     TURNS..TURN_ANGLES => x[i] *= libm::exp(off),
                     ROOTS..ROOTS_BESIDE if independent => x[i] *= libm::exp(off),
                     SHARE => (),
-                    _ => x[i] = off,
+                    _ => x[i] += off,
                 }
             }
             x
