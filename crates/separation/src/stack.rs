@@ -157,6 +157,13 @@ impl Stack {
         }
     }
 
+    /// How a body stands when the separation begins, from body to inertial axes.
+    #[must_use]
+    pub fn attitude(&self, role: Role) -> UnitQuaternion<f64> {
+        let own = |role: Role| self.bodies[role as usize].attitude();
+        self.turned(&own(Role::Stage)) * own(role)
+    }
+
     /// The separation that begins so.
     ///
     /// # Errors
@@ -215,6 +222,11 @@ impl Stack {
         mounted.nominal.of_values(&values, mounted.fails)
     }
 
+    /// How the whole is turned, of which the stage alone stands so.
+    fn turned(&self, stage: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
+        rotation(&(stage * self.rotation))
+    }
+
     /// Turns both bodies about their common mass centre and sets them turning, as one rigid body.
     fn move_whole(&self, states: &mut [BodyState; 2]) {
         let zero = Vector3::zeros();
@@ -228,7 +240,7 @@ impl Stack {
         };
         let (centre, velocity) = (mean(|s| s.position), mean(|s| s.velocity));
         let axes = states[1].attitude;
-        let turned = rotation(&(axes * self.rotation));
+        let turned = self.turned(&axes);
         let rate = turned * (axes * self.rate);
         for state in states {
             let arm = turned * (state.position - centre);
@@ -258,10 +270,14 @@ impl Placed {
         Self { inertia, mass, centre: zero, rotation: zero, state, nominal: state }
     }
 
+    /// The attitude, but for that of the whole.
+    fn attitude(&self) -> UnitQuaternion<f64> {
+        self.state.attitude * rotation(&self.rotation)
+    }
+
     /// The state of the mass centre.
     fn state(&self) -> BodyState {
-        let attitude = self.state.attitude * rotation(&self.rotation);
-        BodyState { attitude, ..self.state }.of_point(&self.centre)
+        BodyState { attitude: self.attitude(), ..self.state }.of_point(&self.centre)
     }
 }
 
@@ -309,6 +325,40 @@ mod tests {
     }
 
     proptest! {
+        /// Bodies stand as they do in the separation that begins so.
+        #[test]
+        fn attitudes_are_those_of_the_separation(
+            turns in [vector(2.0), vector(2.0)],
+            own in [vector(120.0), vector(120.0)],
+            whole in vector(180.0),
+            which in 0..8_u8,
+        ) {
+            let inertia = InertiaMatrix::from_entries([5.0, 4.0, 3.0], [0.0; 3]).unwrap();
+            let body = |i: usize| {
+                let attitude = UnitQuaternion::from_scaled_axis(turns[i]);
+                let position = Vector3::z() * (1.0 - 2.0 * i as f64);
+                let state = BodyState { position, attitude, ..BodyState::default() };
+                Body::new(10.0, inertia).unwrap().moving(state)
+            };
+            let spring = Spring::new(4e4, 0.05, Vector3::x() * 1.1, Vector3::x()).unwrap();
+            let nominal = Separation::new(body(0), body(1), &[spring]).unwrap();
+            let mut stack = Stack::from(&nominal);
+            for i in 0..3 {
+                for role in [Role::Payload, Role::Stage] {
+                    if which & 1 << role as u8 != 0 {
+                        stack.set_body(role, BodyParameter::Attitude, i, own[role as usize][i]);
+                    }
+                }
+                if which & 4 != 0 {
+                    stack.set_whole(StackParameter::Attitude, i, whole[i]);
+                }
+            }
+            let begun = stack.separation().unwrap();
+            for (role, moving) in [(Role::Payload, begun.payload()), (Role::Stage, begun.stage())] {
+                prop_assert!(stack.attitude(role).angle_to(&moving.state().attitude) < 1e-12);
+            }
+        }
+
         /// A separation does not know in which frames its bodies were described: wherever the origins of
         /// the frames lie in the structures, the same bodies part in the same way.
         #[test]

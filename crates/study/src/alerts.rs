@@ -60,7 +60,7 @@ pub(crate) enum Alert {
         /// Runs that did not fail.
         runs: u64,
     },
-    /// In runs the payload leaves by more than 90° away from where it is to go.
+    /// In runs the payload leaves by more than 90° away from where it is to go, as the stage stands.
     Backwards {
         model: String,
         backwards: u64,
@@ -143,7 +143,7 @@ impl Alert {
     }
 
     /// That in so many runs, of those in which the bodies part, the payload leaves by more than 90° away from where it is to
-    /// go, if it does in any.
+    /// go, as the stage stands, if it does in any.
     pub(crate) fn backwards(
         model: &str,
         backwards: u64,
@@ -218,7 +218,7 @@ impl Alert {
             Self::Backwards { model, backwards, runs, outlines } => {
                 let text = Text::default()
                     .strong(format!("{model}: the payload leaves the wrong way in {backwards} of {runs} runs"))
-                    .plain(", more than 90° away from the direction that is intended. ");
+                    .plain(", more than 90° away from the intended direction, which is turned here with the stage as it stands when the clamp opens. ");
                 if *outlines {
                     text.plain("Below is told in how many runs the outlines of the bodies touch.")
                 } else {

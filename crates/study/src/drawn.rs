@@ -182,18 +182,23 @@ pub(crate) fn separation(
     stack.set_inertia(Body::Payload, payload);
     stack.set_inertia(Body::Stage, stage);
     for (d, &value) in scenario.dispersions().all().iter().zip(drawn) {
-        match d.target {
-            Target::Body(body, parameter, i) => stack.set_body(body, parameter, i, value),
-            Target::Stack(parameter, i) => stack.set_whole(parameter, i, value),
-            Target::Load(load, parameter, i) => stack.set_load(load, parameter, i, value),
-            Target::Fails(load) if value != 0.0 => stack.fail_load(load),
-            Target::Fails(_) | Target::Late(..) => {}
-        }
+        put(&mut stack, d.target, value);
     }
     stack.separation().map_err(RunFailure::from)
 }
 
 #[cfg(test)]
+/// Puts a drawn value in the place of the nominal one.
+pub(crate) fn put(stack: &mut Stack, target: Target, value: f64) {
+    match target {
+        Target::Body(body, parameter, i) => stack.set_body(body, parameter, i, value),
+        Target::Stack(parameter, i) => stack.set_whole(parameter, i, value),
+        Target::Load(load, parameter, i) => stack.set_load(load, parameter, i, value),
+        Target::Fails(load) if value != 0.0 => stack.fail_load(load),
+        Target::Fails(_) | Target::Late(..) => {}
+    }
+}
+
 mod tests {
     use super::*;
     use gyradius_separation::MovingBody;

@@ -17,6 +17,7 @@
 mod about;
 mod alerts;
 mod any;
+mod backwards;
 mod body;
 mod carry_out;
 mod claim;

@@ -8,6 +8,7 @@ use std::sync::Mutex;
 use crate::{
     Fleet,
     alerts::near_boundary,
+    backwards::backwards,
     body::{Body, Entry},
     column::attitudes,
     faults::{Faults, GivenFault},
@@ -29,7 +30,7 @@ pub(crate) struct Seen {
     pub(crate) far: [Option<u64>; 2],
     /// How many inertias of payload and stage are near the boundary of what is realizable, and how many there are.
     pub(crate) near_boundary: [[u64; 2]; 2],
-    /// In how many runs the payload leaves by more than 90° away from where it is to go.
+    /// In how many runs the payload leaves the wrong way.
     pub(crate) backwards: u64,
     /// Attitudes of the payload, of some runs that are evenly spaced, in their order.
     pub(crate) attitudes: Vec<UnitQuaternion<f64>>,
@@ -125,9 +126,6 @@ impl Drawn {
             Some(of(body).filter(|q| !law.in_mean_half(q)).count() as u64)
         });
         let kept = all[Body::Payload as usize].iter();
-        let errors = block.numbers(&Quantity::DirectionError.column());
-        let errors =
-            errors.into_iter().flat_map(|all| (0..block.len()).filter_map(move |i| all.get(i)));
         Self {
             first: block.first(),
             drawn: [0, 1].map(|body: usize| all[body].len() as u64),
@@ -135,7 +133,7 @@ impl Drawn {
             near_boundary: Body::BOTH.map(|body| {
                 near_boundary(block, &Entry::ALL.map(|entry| Quantity::entry(body, entry).column()))
             }),
-            backwards: errors.filter(|error| *error > 90.0).count() as u64,
+            backwards: backwards(scenario, block),
             kept: kept.filter(|(run, _)| run.is_multiple_of(stride)).map(|(_, q)| *q).collect(),
         }
     }
