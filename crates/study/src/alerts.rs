@@ -45,9 +45,9 @@ pub(crate) enum Alert {
         column: String,
         value: f64,
         runs: u64,
-        /// Whether there is one vehicle, for which what vehicles differ in is drawn once.
-        #[serde(default)]
-        one_vehicle: bool,
+        /// How many vehicles drew it, if each draws it once for all of its flights.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        vehicles: Option<u64>,
         /// The probability of what is dispersed, if it is an event.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         probability: Option<f64>,
@@ -117,16 +117,10 @@ impl Alert {
         let (value, runs) = (survey.minimum()?.0, survey.n());
         let is_constant = runs > 1 && survey.maximum()?.0 == value;
         let (model, column) = (model.to_owned(), dispersed.column.clone());
-        let one_vehicle = fleet.is_some_and(|fleet| fleet.vehicles() == 1);
+        let vehicles = fleet.filter(|_| !dispersed.each.is_flight());
+        let vehicles = vehicles.map(|fleet| runs.div_ceil(fleet.flights()));
         let probability = dispersed.law.as_bernoulli();
-        is_constant.then_some(Self::Unmoved {
-            model,
-            column,
-            value,
-            runs,
-            one_vehicle,
-            probability,
-        })
+        is_constant.then_some(Self::Unmoved { model, column, value, runs, vehicles, probability })
     }
 
     /// That less than half of so many runs, which did not fail, have a value of outcomes, given by their labels with how many runs have
@@ -312,3 +306,5 @@ mod together;
 mod some_runs_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod vehicle_tests;

@@ -49,7 +49,7 @@ pub(super) fn ordinary(runs: u64, spread: f64, springs: &str) -> Scenario {
     Scenario::from_toml(&text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-const NORMAL: &str = "stiffness_n_per_m = { law = \"normal\", sigma = 200.0 }";
+pub(super) const NORMAL: &str = "stiffness_n_per_m = { law = \"normal\", sigma = 200.0 }";
 
 #[test]
 fn an_ordinary_scenario_has_no_alert() {
@@ -57,45 +57,6 @@ fn an_ordinary_scenario_has_no_alert() {
     let (summary, _) = study(&scenario);
     assert_eq!(summary.head.alerts, []);
     assert!(!scenario.report(&summary).html().contains("Before you rely on the results"));
-}
-
-/// Drawn for the vehicle of which there is one, a mass is the same in all flights: the alert says why.
-#[test]
-fn one_vehicle_is_told_to_be_why() {
-    let base = ordinary(60, 0.01, NORMAL).to_toml();
-    for (drawn, counts, is_same) in [
-        ("vehicle", Some([1, 30]), true),
-        ("vehicle", Some([2, 30]), false),
-        ("flight", Some([1, 30]), false),
-        ("flight", None, false),
-    ] {
-        let mut table: toml::Table = base.parse().unwrap();
-        let mut mass = toml::Table::from_iter([("sigma".to_owned(), 30.0.into())]);
-        if let Some([vehicles, flights]) = counts {
-            mass.insert("drawn".to_owned(), drawn.into());
-            table.remove("runs");
-            table.insert("vehicles".to_owned(), vehicles.into());
-            table.insert("flights".to_owned(), flights.into());
-        }
-        let dispersion =
-            table["payload"].as_table_mut().unwrap()["dispersion"].as_table_mut().unwrap();
-        dispersion.insert("mass_kg".to_owned(), mass.into());
-        let scenario = Scenario::from_toml(&toml::to_string(&table).unwrap()).unwrap();
-        let (summary, _) = study(&scenario);
-        let told: Vec<(&str, bool)> = summary
-            .head
-            .alerts
-            .iter()
-            .filter_map(|alert| match alert {
-                Alert::Unmoved { column, one_vehicle, .. } => Some((&**column, *one_vehicle)),
-                _ => None,
-            })
-            .collect();
-        let expected = if is_same { vec![("payload_mass_kg", true)] } else { vec![] };
-        assert_eq!(told, expected, "{drawn}, {counts:?}");
-        let page = scenario.report(&summary).html();
-        assert_eq!(page.contains("There is only one vehicle, so that"), is_same);
-    }
 }
 
 /// Thrown at the stage, at rest and away from it, by springs that may fail: the alert counts the rows, and the page names it. Spun about

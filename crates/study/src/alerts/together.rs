@@ -8,6 +8,8 @@ use super::{Alert, HEAVY};
 const OUTCOMES: usize = 4;
 /// Dispersions of a model that are named.
 const DISPERSIONS: usize = 8;
+/// What is said of events that vehicles draw, as they fly more often than that.
+const DRAWN_ONCE: &str = ", drawn once for each vehicle,";
 /// Groups of models whose dispersions are named.
 const GROUPS: usize = 8;
 
@@ -67,11 +69,11 @@ struct Unmoved<'a> {
 /// Which dispersions moved nothing in the runs of which models.
 pub(super) fn unmoved(alerts: &[Alert]) -> Text {
     let mut of_models: Vec<Unmoved<'_>> = Vec::new();
-    // Of events that did not happen and of those that did in all runs: probabilities and runs.
-    let mut events: [Vec<(f64, u64)>; 2] = Default::default();
+    // Of events that never happened and of those that always did, drawn by runs and by vehicles: probabilities and draws.
+    let mut events: [[Vec<(f64, u64)>; 2]; 2] = Default::default();
     let mut is_of_one_vehicle = false;
     for alert in alerts {
-        let Alert::Unmoved { model, column, value, runs, one_vehicle, probability } = alert else {
+        let Alert::Unmoved { model, column, value, runs, vehicles, probability } = alert else {
             continue;
         };
         let own = |of: &&mut Unmoved<'_>| of.models == [model.as_str()] && of.runs == *runs;
@@ -82,9 +84,9 @@ pub(super) fn unmoved(alerts: &[Alert]) -> Text {
                 of_models.push(Unmoved { models, runs: *runs, columns });
             }
         }
-        let event = probability.map(|probability| (probability, *runs));
-        events[usize::from(*value != 0.0)].extend(event);
-        is_of_one_vehicle |= one_vehicle;
+        let event = probability.map(|probability| (probability, vehicles.unwrap_or(*runs)));
+        events[usize::from(*value != 0.0)][usize::from(vehicles.is_some())].extend(event);
+        is_of_one_vehicle |= *vehicles == Some(1);
     }
     let mut groups: Vec<Unmoved<'_>> = Vec::new();
     for of in of_models {
@@ -113,12 +115,14 @@ pub(super) fn unmoved(alerts: &[Alert]) -> Text {
         text = text.code("summary.json").plain(" has all of them.");
     }
     for (events, seen) in events.iter().zip(["not seen in", "seen in each of"]) {
-        let probabilities = span(events.iter().map(|(probability, _)| *probability));
-        let runs = span(events.iter().map(|(_, runs)| *runs as f64));
-        if let Some((probabilities, runs)) = probabilities.zip(runs) {
-            let of =
-                format!(" An event with a probability of {probabilities} was {seen} {runs} runs.");
-            text = text.plain(of);
+        for (events, [drawn, runs]) in events.iter().zip([["", "run"], [DRAWN_ONCE, "vehicle"]]) {
+            let probabilities = span(events.iter().map(|(probability, _)| *probability));
+            let draws = span(events.iter().map(|(_, draws)| *draws as f64));
+            let Some((probabilities, draws)) = probabilities.zip(draws) else { continue };
+            let plural = if draws == "1" { "" } else { "s" };
+            text = text.plain(format!(
+                " An event with a probability of {probabilities}{drawn} was {seen} {draws} {runs}{plural}."
+            ));
         }
     }
     if is_of_one_vehicle {
@@ -178,7 +182,7 @@ mod tests {
                             column: format!("c{}_{column}", if alike { 0 } else { model }),
                             value: 0.0,
                             runs: 5000,
-                            one_vehicle: false,
+                            vehicles: None,
                             probability,
                         };
                         let alerts: Vec<Alert> = (0..models)
