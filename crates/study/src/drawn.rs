@@ -139,20 +139,21 @@ fn values<T>(joint: &Joint<T>, scores: Vec<f64>) -> Vec<f64> {
     values
 }
 
+/// The places of the starts of loads that are not late among the values of a separation: these start as they should.
+pub(crate) fn in_time(scenario: &Scenario, values: &[f64]) -> impl Iterator<Item = usize> {
+    let all = scenario.dispersions().all();
+    let not_late = all.iter().zip(values).filter(|(_, value)| **value == 0.0);
+    not_late.filter_map(move |(d, _)| {
+        let Target::Late(load, start) = d.target else { return None };
+        all.iter().position(|d| d.target == Target::Load(load, start, 0))
+    })
+}
+
 /// The values of a separation, of which a load that is not late starts as it should.
 pub(crate) fn with_starts(scenario: &Scenario, mut values: Vec<f64>) -> Box<[f64]> {
-    let all = scenario.dispersions().all();
-    for late in 0..values.len() {
-        if let Target::Late(load, start) = all[late].target
-            && values[late] == 0.0
-        {
-            let start = Target::Load(load, start, 0);
-            for (value, d) in values.iter_mut().zip(all) {
-                if d.target == start {
-                    *value = d.nominal;
-                }
-            }
-        }
+    let in_time: Vec<usize> = in_time(scenario, &values).collect();
+    for place in in_time {
+        values[place] = scenario.dispersions().all()[place].nominal;
     }
     values.into()
 }
@@ -187,7 +188,6 @@ pub(crate) fn separation(
     stack.separation().map_err(RunFailure::from)
 }
 
-#[cfg(test)]
 /// Puts a drawn value in the place of the nominal one.
 pub(crate) fn put(stack: &mut Stack, target: Target, value: f64) {
     match target {
@@ -199,6 +199,7 @@ pub(crate) fn put(stack: &mut Stack, target: Target, value: f64) {
     }
 }
 
+#[cfg(test)]
 mod tests {
     use super::*;
     use gyradius_separation::MovingBody;

@@ -10,6 +10,7 @@ use super::Replay;
 use crate::{
     body::{Body, Entry},
     column::{CLEARANCE_NOTE, REALIZABLE, RECOMPRESSED},
+    drawn,
     loads::Short,
     quantity::Quantity,
 };
@@ -188,10 +189,12 @@ impl Replay {
         let width = dispersed.iter().map(|d| d.column.len()).max().unwrap_or(0);
         let [value, nominal, sigmas] = ["drawn", "nominal", "σ from mean"];
         writeln!(f, "\nalso dispersed{:1$}{value:>14}{nominal:>14}{sigmas:>14}", "", width - 12)?;
-        for (d, value) in dispersed.iter().zip(&self.case.drawn) {
+        let in_time: Vec<usize> = drawn::in_time(&self.scenario, &self.case.drawn).collect();
+        for (place, (d, value)) in dispersed.iter().zip(&self.case.drawn).enumerate() {
             let sigmas = (value - d.law.mean()) / d.law.deviation();
             // Nothing of what happens or not, nor of a start that is not late.
-            let tells = sigmas.is_finite() && *value != d.nominal && d.law.name() != "bernoulli";
+            let is_told = !in_time.contains(&place) && d.law.as_bernoulli().is_none();
+            let tells = sigmas.is_finite() && is_told;
             let sigmas = if tells { format!("{sigmas:.2}") } else { "–".to_owned() };
             let (value, nominal) = (significant(*value, 7), significant(d.nominal, 7));
             writeln!(f, "  {:width$}{value:>14}{nominal:>14}{sigmas:>14}", d.column)?;
@@ -230,5 +233,55 @@ mod tests {
                 page.lines().find(|line| line.trim_start().starts_with("nutation, and its bounds"));
             assert_eq!(told.unwrap().ends_with(" –"), spin == 0.0, "{page}");
         }
+    }
+
+    /// Of every number that has a spread the distance from its mean is told, also where it is just the nominal value, but for what happens
+    /// or not, and for the start of a spring that is not late.
+    #[test]
+    fn distances_from_the_mean_are_told() {
+        // Zero is a change of the stroke and of the mass by nothing.
+        let samples = "{ law = \"samples\", samples = [0.0, 0.01, 0.02] }";
+        let body = |name: &str, place: f64| {
+            format!(
+                "[{name}]\nmass_kg = 100.0\ninertia_kg_m2 = [[10.0, 0, 0], [0, 11.0, 0], [0, 0, 12.0]]\nposition_m = [0, 0, {place:?}]\n\
+                 [{name}.dispersion]\nroot_second_moment_variance_kg_m2 = [0.0, 0, 0]\naxes = \"fixed\"\nmass_kg = {samples}\n"
+            )
+        };
+        let text = format!(
+            "name = \"samples\"\nruns = 40\n{}{}[[springs]]\nstiffness_n_per_m = 1000.0\nstroke_m = 0.1\n\
+             payload_point_m = [0, 0, -0.95]\nstage_point_m = [0, 0, 0.95]\n[springs.dispersion]\nstroke_m = {samples}\n\
+             start_s = {{ law = \"samples\", samples = [0.0, 0.01] }}\nlate_probability = 0.5\nfailure_probability = 0.3\n\
+             [[springs]]\nstiffness_n_per_m = 1000.0\nstroke_m = 0.1\npayload_point_m = [0, 0, -0.95]\nstage_point_m = [0, 0, 0.95]\n\
+             [[models]]\nname = \"own\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n",
+            body("payload", 1.0),
+            body("stage", -1.0)
+        );
+        let scenario = Scenario::from_toml(&text).unwrap();
+        let mut nominal = [0, 0];
+        for run in 0..40 {
+            let replay = Replay::new(&scenario, None, run, 1.0).unwrap();
+            let page = replay.to_string();
+            let drawn = |column: &str| {
+                let line = page.lines().find(|line| line.trim_start().starts_with(column)).unwrap();
+                let mut words = line.split_whitespace().skip(1);
+                let [value, nominal, sigmas] = [(); 3].map(|()| words.next().unwrap().to_owned());
+                (value == nominal, value == "0", sigmas)
+            };
+            for column in ["payload_mass_kg", "stage_mass_kg", "spring_1_stroke_m"] {
+                let (is_nominal, _, sigmas) = drawn(column);
+                let known: f64 = sigmas.parse().unwrap_or_else(|_| panic!("{page}"));
+                // (0, 0.01, 0.02) have the mean 0.01, and a standard deviation of √(2/3) × 0.01.
+                assert_eq!((known + 1.5_f64.sqrt()).abs() < 0.006, is_nominal, "{page}");
+                nominal[0] += usize::from(is_nominal);
+            }
+            let (_, in_time, _) = drawn("spring_1_late");
+            let (is_nominal, _, sigmas) = drawn("spring_1_start_s");
+            assert_eq!(sigmas.parse::<f64>().is_err(), in_time, "{page}");
+            nominal[1] += usize::from(is_nominal && !in_time);
+            for event in ["spring_1_late", "spring_1_failure"] {
+                assert_eq!(drawn(event).2, "–", "{page}");
+            }
+        }
+        assert!(nominal.iter().all(|count| *count > 4), "{nominal:?}");
     }
 }
