@@ -448,7 +448,8 @@ pub(crate) struct ReplayArgs {
     #[arg(long, value_name = "NAME")]
     pub(crate) model: Option<String>,
 
-    /// Seconds to go on for after the last release
+    /// Seconds to go on for after the last release, 3600 at most, and less of bodies that spin fast: the motion must take no more than 100000
+    /// steps
     #[arg(long, value_name = "SECONDS", default_value_t = 5.0, allow_negative_numbers = true)]
     pub(crate) coast: f64,
 

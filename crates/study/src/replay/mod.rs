@@ -96,7 +96,7 @@ impl Replay {
     ///
     /// # Errors
     /// The folder holds no study, or one by another version or from another scenario; there is no such
-    /// model or run; the coast is not within 0 and 3600 s; the table says otherwise.
+    /// model or run; the coast is not within 0 and 3600 s, or takes too many steps; the table says otherwise.
     pub fn open(
         path: &Path,
         model: Option<&str>,
@@ -137,7 +137,7 @@ impl Replay {
     /// Replays a run of a scenario.
     ///
     /// # Errors
-    /// There is no such model or run; the coast is not within 0 and 3600 s.
+    /// There is no such model or run; the coast is not within 0 and 3600 s, or takes too many steps.
     pub fn new(
         scenario: &Scenario,
         model: Option<&str>,
