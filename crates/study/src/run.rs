@@ -222,11 +222,19 @@ pub(crate) enum ClearanceNote {
         /// Until when they are followed, s.
         until: f64,
     },
-    /// The search was given up.
+    /// The search for what counts was given up.
     #[error(
         "not proven: the bodies may come nearer, or touch earlier, for the search was given up after {looks} looks"
     )]
     NotProven {
+        /// Instants and spans looked at.
+        looks: usize,
+    },
+    /// The search before the last release was given up.
+    #[error(
+        "not proven before the last release: the bodies may come nearer there, or touch, for the search was given up after {looks} looks"
+    )]
+    NotProvenBefore {
         /// Instants and spans looked at.
         looks: usize,
     },
@@ -258,6 +266,7 @@ impl ClearanceNote {
         let partial = clearance.undecided_from_s().map(|until| Self::Partial { until });
         let looks = clearance.looks();
         let not_proven = clearance.is_stopped().then_some(Self::NotProven { looks });
+        let before = watched.given_up_before().map(|looks| Self::NotProvenBefore { looks });
         let nearer = watched.nearer_before().map(|nearest| Self::NearerBefore {
             distance: nearest.distance_m(),
             time: nearest.time_s(),
@@ -270,7 +279,7 @@ impl ClearanceNote {
             (false, false) => Some(Self::Together),
         };
         // Up to when the bodies are followed comes first, for what is said of the outlines holds until then.
-        [partial, not_proven, nearer, mated].into_iter().flatten().collect()
+        [partial, not_proven, before, nearer, mated].into_iter().flatten().collect()
     }
 
     /// What kind it is, without numbers, so that those of a kind can be counted.
@@ -281,6 +290,9 @@ impl ClearanceNote {
             Self::SomeTogether => "some outlines are mated and do not part",
             Self::Partial { .. } => "a body turns too far to be followed to the end of the coast",
             Self::NotProven { .. } => "the search was given up before the clearance was proven",
+            Self::NotProvenBefore { .. } => {
+                "the search before the last release was given up before it was proven"
+            }
             Self::NearerBefore { .. } => {
                 "the outlines come nearer before the last release than after it"
             }

@@ -183,6 +183,31 @@ fn all_notes_of_a_clearance_are_told() {
     assert!(pairs.iter().all(|pair| seen.contains(pair)) && seen.len() >= 4, "{seen:?}");
 }
 
+/// A search that was given up is told, be it that before the last release, that over the coast, both, or the only one that there is.
+#[test]
+fn every_search_that_was_given_up_is_told() {
+    let found = |looks: Option<usize>| -> Clearance {
+        let (is_stopped, looks) = (looks.is_some(), looks.unwrap_or(7));
+        let text = format!(
+            r#"{{"shapes": [], "undecided_from_s": null, "is_stopped": {is_stopped}, "looks": {looks}}}"#
+        );
+        serde_json::from_str(&text).unwrap()
+    };
+    for pushed in [None, Some(11)] {
+        for coast in [None, Some(None), Some(Some(13))] {
+            let watched = Watched::of(found(pushed), coast.map(found));
+            let told = ClearanceNote::all(&Ok(watched));
+            let told: Vec<_> =
+                told.into_iter().filter(|note| *note != ClearanceNote::Mated).collect();
+            let counts = coast.unwrap_or(pushed).map(|looks| ClearanceNote::NotProven { looks });
+            let before = pushed.filter(|_| coast.is_some());
+            let before = before.map(|looks| ClearanceNote::NotProvenBefore { looks });
+            let expected: Vec<_> = counts.into_iter().chain(before).collect();
+            assert_eq!(told, expected, "{pushed:?} {coast:?}");
+        }
+    }
+}
+
 /// 12 rad/s for 600 s: all but the clearance of the whole coast is known, and the row stays.
 #[test]
 fn fast_turning_fails_no_row() {

@@ -118,10 +118,22 @@ impl Watched {
         Ok(Self { pushed, coast: coast.transpose()?, at_start })
     }
 
+    /// Of these searches, whatever they have found.
+    #[cfg(test)]
+    pub(crate) fn of(pushed: Clearance, coast: Option<Clearance>) -> Self {
+        Self { pushed, coast, at_start: None }
+    }
+
     /// What counts: the clearance over the coast, but for bodies that touch before it, which would move otherwise from
     /// then on.
     pub(crate) fn clearance(&self) -> &Clearance {
         self.coast.as_ref().unwrap_or(&self.pushed)
+    }
+
+    /// After how many looks the search before the last release was given up, if it was and the clearance is that of the coast.
+    pub(crate) fn given_up_before(&self) -> Option<usize> {
+        let is_stopped = self.coast.is_some() && self.pushed.is_stopped();
+        is_stopped.then(|| self.pushed.looks())
     }
 
     /// Where the bodies come nearer before the last release than they were when the clamp opened, and than they are after
