@@ -1,16 +1,16 @@
 //! How the share of runs that fail a requirement comes to rest with the number of runs: a line a model, with its interval.
 
-use gyradius_campaign::{ConvergencePoint, Judgement, Looks, Requirement, stated_in_percent};
+use gyradius_campaign::{ConvergencePoint, Looks, Requirement, stated_in_percent};
 use gyradius_statistics::Interval;
 use std::collections::BTreeSet;
 
-use crate::Drawing;
 use crate::axis::{Spacing, Tick, Units, decades, ticks};
 use crate::field::{ACROSS, Field, HIGH, band_pen, line_pen, required_pen};
 use crate::lines::{mark_pen, marker};
 use crate::style;
 use crate::svg::px;
 use crate::text::significant;
+use crate::{Drawing, JudgedModel};
 
 /// The share of runs that fail a requirement among the first so many, under models. Nothing is computed here but places: the numbers
 /// are those of the judgements. Where a rule looked at the runs while they were done stand marks along the bottom, at how many counted then.
@@ -19,16 +19,16 @@ pub fn convergence_figure(
     name: &str,
     caption: &str,
     requirement: &Requirement,
-    models: &[(&str, &Judgement)],
+    models: &[JudgedModel<'_>],
 ) -> Drawing {
     Drawing::new(name, caption, svg(requirement, models))
 }
 
-fn svg(requirement: &Requirement, models: &[(&str, &Judgement)]) -> String {
+fn svg(requirement: &Requirement, models: &[JudgedModel<'_>]) -> String {
     let title = format!("Convergence: {}", requirement.name());
     let allowed = 1.0 - requirement.probability();
-    let estimates = || models.iter().flat_map(|(_, judgement)| judgement.convergence());
-    let last = models.iter().filter_map(|(_, judgement)| judgement.convergence().last());
+    let estimates = || models.iter().flat_map(|model| model.judgement.convergence());
+    let last = models.iter().filter_map(|model| model.judgement.convergence().last());
     // Wide intervals of a few runs leave the plot, so that what matters can be read.
     let top = last.map(|e| 1.8 * e.interval.upper()).fold(2.2 * allowed, f64::max);
     let top = 100.0 * top.min(1.02);
@@ -47,7 +47,7 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)]) -> String {
 
     let shares = format!("share of the runs that fail it (%)  {}", units.note());
     let mut field = Field::new(&across, &up, ["runs that count", shares.trim_end()]);
-    for (i, (model, judgement)) in models.iter().enumerate() {
+    for &JudgedModel { name, colour, judgement } in models {
         let estimates = judgement.convergence();
         let corner = |e: &ConvergencePoint, by: f64, share: f64| {
             format!("{} {}", px((x(e) + by).clamp(0.0, ACROSS)), y(share))
@@ -63,17 +63,17 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)]) -> String {
             .chain(edge(Interval::lower).into_iter().rev())
             .collect();
         if !band.is_empty() {
-            field.plot.path(&band_pen(i), &format!("M{}z", band.join("L")));
+            field.plot.path(&band_pen(colour), &format!("M{}z", band.join("L")));
         }
-        field.entry(*model, |swatch| {
-            swatch.path(&band_pen(i), "M0 -6h26v12h-26z");
-            swatch.path(&line_pen(i), "M0 0h26");
-            swatch.path(&mark_pen(i), &marker(i, 13.0, 0.0));
+        field.entry(name, |swatch| {
+            swatch.path(&band_pen(colour), "M0 -6h26v12h-26z");
+            swatch.path(&line_pen(colour), "M0 0h26");
+            swatch.path(&mark_pen(colour), &marker(colour, 13.0, 0.0));
         });
     }
     field.plot.path(&required_pen(), &format!("M0 {}h{}", y(allowed), px(ACROSS)));
     let mut above = Vec::new();
-    for (i, (model, judgement)) in models.iter().enumerate() {
+    for &JudgedModel { name, colour, judgement } in models {
         let (mut d, mut marks) = (String::new(), String::new());
         let all = judgement.convergence().iter();
         let at = |e: &ConvergencePoint| [place((e.runs as f64).log10()), 100.0 * e.failing / top];
@@ -86,19 +86,19 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)]) -> String {
             }
         }
         for [x, up] in points.iter().filter(|[_, up]| *up <= 1.0) {
-            marks.push_str(&marker(i, *x, HIGH - up * HIGH));
+            marks.push_str(&marker(colour, *x, HIGH - up * HIGH));
         }
         if let Some(highest) =
             points.iter().map(|[_, up]| *up).filter(|up| *up > 1.0).reduce(f64::max)
         {
             let highest = significant(highest * top, 3);
-            above.push(format!("{model}: up to {highest} % in the first runs, above this axis."));
+            above.push(format!("{name}: up to {highest} % in the first runs, above this axis."));
         }
-        field.plot.path(&line_pen(i), &d);
-        field.plot.path(&mark_pen(i), &marks);
+        field.plot.path(&line_pen(colour), &d);
+        field.plot.path(&mark_pen(colour), &marks);
     }
     // Where models leave out different runs, each has its own.
-    let looks = models.iter().flat_map(|(_, judgement)| judgement.counted_at_looks());
+    let looks = models.iter().flat_map(|model| model.judgement.counted_at_looks());
     let looks: BTreeSet<u64> = looks.copied().collect();
     if !looks.is_empty() {
         let ticks = looks.iter().map(|runs| place((*runs as f64).log10()));
@@ -113,7 +113,7 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)]) -> String {
         swatch.path(&required_pen(), "M0 0h26");
     });
     let confidence = stated_in_percent(requirement.confidence().level());
-    let often = models.iter().any(|(_, judgement)| judgement.looks() == Looks::Often);
+    let often = models.iter().any(|model| model.judgement.looks() == Looks::Often);
     let intervals =
         if often { "intervals that hold together" } else { "interval at each number of runs" };
     field.entry(format!("shaded: {confidence} {intervals}"), |swatch| {
@@ -155,9 +155,9 @@ fn below_top(a: [f64; 2], b: [f64; 2]) -> Option<[[f64; 2]; 2]> {
 }
 
 /// The figure in words.
-fn description(models: &[(&str, &Judgement)]) -> String {
+fn description(models: &[JudgedModel<'_>]) -> String {
     let mut text = "Share of the runs that fail it, against the number of runs.".to_owned();
-    for (model, judgement) in models {
+    for &JudgedModel { name, judgement, .. } in models {
         let told: Vec<String> = judgement
             .convergence()
             .iter()
@@ -166,7 +166,7 @@ fn description(models: &[(&str, &Judgement)]) -> String {
             .map(|e| format!("{} % of {}", significant(100.0 * e.failing, 3), e.runs))
             .collect();
         let told = if told.is_empty() { "no run counts".to_owned() } else { told.join(", ") };
-        text.push_str(&format!(" {model}: {told}."));
+        text.push_str(&format!(" {name}: {told}."));
     }
     text
 }

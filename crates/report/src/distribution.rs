@@ -5,7 +5,6 @@ use gyradius_campaign::{
 };
 use gyradius_statistics::tail;
 
-use crate::Drawing;
 use crate::axis::Tick;
 use crate::field::{ACROSS, Across, Field, HIGH, band_pen, line_pen, required_pen};
 use crate::lines::{mark_pen, marker};
@@ -13,6 +12,7 @@ use crate::numbers::{digits_of, with_unit};
 use crate::style;
 use crate::svg::{Svg, px};
 use crate::text::{count, significant};
+use crate::{Drawing, JudgedModel};
 
 /// Percentages that an axis may have, the lower half of them.
 const PERCENT: [f64; 11] = [1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 0.01, 0.1, 1.0, 5.0, 20.0, 50.0];
@@ -27,12 +27,12 @@ pub fn distribution_figure(
     caption: &str,
     requirement: &Requirement,
     unit: Option<&str>,
-    models: &[(&str, &Judgement)],
+    models: &[JudgedModel<'_>],
 ) -> Drawing {
     Drawing::new(name, caption, svg(requirement, unit, models))
 }
 
-fn svg(requirement: &Requirement, unit: Option<&str>, models: &[(&str, &Judgement)]) -> String {
+fn svg(requirement: &Requirement, unit: Option<&str>, models: &[JudgedModel<'_>]) -> String {
     let title = format!("Distribution: {}", requirement.name());
     let up = Up::new(requirement, models);
     let (across, beyond) = across(requirement.bound(), models);
@@ -41,12 +41,12 @@ fn svg(requirement: &Requirement, unit: Option<&str>, models: &[(&str, &Judgemen
     let mut field = Field::linear(&across, &up.ticks(), [&quantity, shares]);
     let confidence = stated_in_percent(requirement.confidence().level());
     let probability = stated_in_percent(requirement.probability());
-    for (place, (model, judgement)) in models.iter().enumerate() {
-        band(&mut field.plot, place, judgement, &across, &up);
-        field.entry(*model, |swatch| {
-            swatch.path(&band_pen(place), "M0 -6h26v12h-26z");
-            swatch.path(&line_pen(place), "M0 0h26");
-            swatch.path(&mark_pen(place), &marker(place, 13.0, 0.0));
+    for &JudgedModel { name, colour, judgement } in models {
+        band(&mut field.plot, colour, judgement, &across, &up);
+        field.entry(name, |swatch| {
+            swatch.path(&band_pen(colour), "M0 -6h26v12h-26z");
+            swatch.path(&line_pen(colour), "M0 0h26");
+            swatch.path(&mark_pen(colour), &marker(colour, 13.0, 0.0));
         });
     }
     let limits: Vec<f64> = requirement.bound().limits().collect();
@@ -57,11 +57,11 @@ fn svg(requirement: &Requirement, unit: Option<&str>, models: &[(&str, &Judgemen
     let required: String =
         up.required().map(|y| format!("M0 {}h{}", px(y), px(ACROSS))).into_iter().collect();
     field.plot.path(&required_pen(), &required);
-    for (place, (_, judgement)) in models.iter().enumerate() {
-        line(&mut field.plot, place, judgement, &across, &up);
-        tolerance(&mut field.plot, place, judgement, &across, &up);
+    for &JudgedModel { colour, judgement, .. } in models {
+        line(&mut field.plot, colour, judgement, &across, &up);
+        tolerance(&mut field.plot, colour, judgement, &across, &up);
     }
-    let often = models.iter().any(|(_, judgement)| judgement.looks() == Looks::Often);
+    let often = models.iter().any(|model| model.judgement.looks() == Looks::Often);
     let of_looks = if often { ", if one looks once" } else { "" };
     let holds =
         format!("shaded: holds the whole distribution with {confidence} confidence{of_looks}");
@@ -74,7 +74,7 @@ fn svg(requirement: &Requirement, unit: Option<&str>, models: &[(&str, &Judgemen
             swatch.path(&required_pen(), "M0 0h26");
         });
     }
-    if models.iter().any(|(_, judgement)| judgement.tolerance().is_some()) {
+    if models.iter().any(|model| model.judgement.tolerance().is_some()) {
         let name =
             format!("tolerance point: {probability} keep this, with {confidence} confidence");
         field.entry(name, |swatch| {
@@ -84,8 +84,8 @@ fn svg(requirement: &Requirement, unit: Option<&str>, models: &[(&str, &Judgemen
     for limit in beyond {
         field.note(format!("The limit {} is far off this axis.", significant(limit, 5)));
     }
-    for (model, judgement) in models {
-        failed(model, judgement).into_iter().for_each(|note| field.note(note));
+    for &JudgedModel { name, judgement, .. } in models {
+        failed(name, judgement).into_iter().for_each(|note| field.note(note));
     }
     field.finish(&title, &description(requirement, models))
 }
@@ -98,7 +98,7 @@ struct Up {
 }
 
 impl Up {
-    fn new(requirement: &Requirement, models: &[(&str, &Judgement)]) -> Self {
+    fn new(requirement: &Requirement, models: &[JudgedModel<'_>]) -> Self {
         let p = requirement.probability();
         // The share that is at most the limit.
         let required = match requirement.bound() {
@@ -106,7 +106,7 @@ impl Up {
             Bound::AtLeast(_) => Some(-probit(p)),
             Bound::Between(..) => None,
         };
-        let shares = models.iter().flat_map(|(_, judgement)| points(judgement)).map(|p| p.share);
+        let shares = models.iter().flat_map(|model| points(model.judgement)).map(|p| p.share);
         let all = shares.map(probit).chain(required);
         let (lower, upper) = all.fold((-1.4_f64, 1.4_f64), |(l, u), z| (l.min(z), u.max(z)));
         Self { lower: lower - 0.15, upper: upper + 0.15, required }
@@ -166,12 +166,12 @@ fn points(judgement: &Judgement) -> &[DistributionPoint] {
 }
 
 /// The horizontal axis, which shows all runs, and the limits that are too far away from them to be shown with them.
-fn across(bound: Bound, models: &[(&str, &Judgement)]) -> (Across, Vec<f64>) {
+fn across(bound: Bound, models: &[JudgedModel<'_>]) -> (Across, Vec<f64>) {
     let span = |values: &mut dyn Iterator<Item = f64>| {
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), x| (l.min(x), u.max(x)))
     };
-    let of_runs = models.iter().flat_map(|(_, judgement)| points(judgement)).map(|p| p.value);
-    let tolerances = models.iter().filter_map(|(_, judgement)| judgement.tolerance());
+    let of_runs = models.iter().flat_map(|model| points(model.judgement)).map(|p| p.value);
+    let tolerances = models.iter().filter_map(|model| model.judgement.tolerance());
     let (lower, upper) = span(&mut of_runs.chain(tolerances.flat_map(Bound::limits)));
     let half = upper / 2.0 - lower / 2.0;
     // Nothing to show but the limits, or one number.
@@ -185,7 +185,7 @@ fn across(bound: Bound, models: &[(&str, &Judgement)]) -> (Across, Vec<f64>) {
 }
 
 /// The band holds between the points too: below the upper bound of the next, above the lower bound of the one before.
-fn band(svg: &mut Svg, model: usize, judgement: &Judgement, across: &Across, up: &Up) {
+fn band(svg: &mut Svg, colour: usize, judgement: &Judgement, across: &Across, up: &Up) {
     let points = points(judgement);
     if points.is_empty() {
         return;
@@ -200,10 +200,10 @@ fn band(svg: &mut Svg, model: usize, judgement: &Judgement, across: &Across, up:
         d.push_str(&format!("V{}H{}", px(up.y(point.lower)), px(across.x(point.value))));
     }
     d.push_str(&format!("V{}H0z", px(HIGH)));
-    svg.path(&band_pen(model), &d);
+    svg.path(&band_pen(colour), &d);
 }
 
-fn line(svg: &mut Svg, model: usize, judgement: &Judgement, across: &Across, up: &Up) {
+fn line(svg: &mut Svg, colour: usize, judgement: &Judgement, across: &Across, up: &Up) {
     let points = points(judgement);
     let (mut d, mut marks) = (String::new(), String::new());
     for (i, point) in points.iter().enumerate() {
@@ -211,22 +211,22 @@ fn line(svg: &mut Svg, model: usize, judgement: &Judgement, across: &Across, up:
         d.push_str(&format!("{}{} {}", if i > 0 { "L" } else { "M" }, px(x), px(y)));
         let outer = i.min(points.len() - 1 - i);
         if outer < 3 || outer.is_multiple_of(MARKED) {
-            marks.push_str(&marker(model, x, y));
+            marks.push_str(&marker(colour, x, y));
         }
     }
-    svg.path(&line_pen(model), &d);
-    svg.path(&mark_pen(model), &marks);
+    svg.path(&line_pen(colour), &d);
+    svg.path(&mark_pen(colour), &marks);
 }
 
 /// Where the required share keeps the bound; of two bounds both.
-fn tolerance(svg: &mut Svg, model: usize, judgement: &Judgement, across: &Across, up: &Up) {
+fn tolerance(svg: &mut Svg, colour: usize, judgement: &Judgement, across: &Across, up: &Up) {
     let Some(bound) = judgement.tolerance() else { return };
     let y = up.required().unwrap_or(up.y(0.5));
     let places: Vec<f64> = bound.limits().map(|x| across.x(x)).collect();
     if let [first, last] = places[..] {
         svg.path(&required_pen(), &format!("M{} {}H{}", px(first), px(y), px(last)));
     }
-    let pen = format!("fill=\"{}\" stroke=\"#ffffff\" stroke-width=\"1.2\"", style::model(model));
+    let pen = format!("fill=\"{}\" stroke=\"#ffffff\" stroke-width=\"1.2\"", style::model(colour));
     let d: String = places.into_iter().map(|x| diamond(x, y)).collect();
     svg.path(&pen, &d);
 }
@@ -257,7 +257,7 @@ fn failed(model: &str, judgement: &Judgement) -> Vec<String> {
 }
 
 /// The figure in words.
-fn description(requirement: &Requirement, models: &[(&str, &Judgement)]) -> String {
+fn description(requirement: &Requirement, models: &[JudgedModel<'_>]) -> String {
     let mut text = format!(
         "Distribution of {}, which must be {} in {} of {}.",
         requirement.quantity(),
@@ -265,7 +265,7 @@ fn description(requirement: &Requirement, models: &[(&str, &Judgement)]) -> Stri
         stated_in_percent(requirement.probability()),
         requirement.failed_runs().of_which()
     );
-    for (model, judgement) in models {
+    for &JudgedModel { name, judgement, .. } in models {
         let points = points(judgement);
         let ends = points.first().zip(points.last());
         let range = ends.map_or_else(
@@ -285,7 +285,7 @@ fn description(requirement: &Requirement, models: &[(&str, &Judgement)]) -> Stri
                 )
             },
         );
-        text.push_str(&format!(" {model}: {range}, {bound}."));
+        text.push_str(&format!(" {name}: {range}, {bound}."));
     }
     text
 }

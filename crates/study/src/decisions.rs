@@ -188,7 +188,7 @@ pub(crate) fn sections(scenario: &impl Subject, head: &Head) -> Vec<Section> {
     let parts = [
         Some(figures::distributions(scenario, head)),
         worst(scenario, head),
-        Some(figures::convergence(head)),
+        Some(figures::convergence(scenario, head)),
     ];
     let details = Section::new("The requirements in detail").sections(parts.into_iter().flatten());
     [answers(scenario, head)].into_iter().chain(alerts).chain([details]).collect()

@@ -27,6 +27,11 @@ fn judged_at(
     judging.finish(&Runs::from(table)).unwrap().pop()
 }
 
+/// The only model.
+fn own(judgement: &Judgement) -> JudgedModel<'_> {
+    JudgedModel { name: "m", colour: 0, judgement }
+}
+
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
         8 => -3.0..3.0,
@@ -60,6 +65,7 @@ proptest! {
         probability in 0.05..0.99999_f64,
         confidence in 0.5..0.999_f64,
         left_out in any::<bool>(),
+        (first, step) in (0..6_usize, prop::sample::select(vec![1_usize, 5])),
     ) {
         let failed = if left_out { FailedRuns::LeftOut } else { FailedRuns::Against };
         let quantity = Measured::column("x");
@@ -67,11 +73,18 @@ proptest! {
         let requirement = requirement.with_failed_runs(failed);
         let judged: Vec<Judgement> = models.iter().filter_map(|numbers| judged(numbers, &requirement)).collect();
         let names: Vec<String> = (0..judged.len()).map(|i| format!("model {i}")).collect();
-        let models: Vec<(&str, &Judgement)> = names.iter().map(String::as_str).zip(&judged).collect();
+        let colour = |place: usize| (first + step * place) % 6;
+        let model = |(place, judgement): (usize, _)| JudgedModel { name: &names[place], colour: colour(place), judgement };
+        let models: Vec<JudgedModel<'_>> = judged.iter().enumerate().map(model).collect();
         for drawing in [distribution_figure("f", "c", &requirement, Some("m"), &models), convergence_figure("f", "c", &requirement, &models)] {
             let seen = read(&drawing.svg);
             prop_assert!(seen.contains("a <name>") && !seen.contains(": ."));
             prop_assert!(names.iter().all(|name| seen.contains(name)));
+            // Each model has the colour that it is to have, and no other colour of models is there.
+            for of in 0..6 {
+                let is_used = models.iter().any(|model| model.colour == of);
+                prop_assert_eq!(drawing.svg.contains(style::model(of)), is_used, "{}", of);
+            }
             let least = sizes(&drawing.svg).into_iter().fold(f64::INFINITY, f64::min);
             let narrowest = 0.75 * crate::field::WIDTH;
             let least_width = format!("min-width:{narrowest}px");
@@ -107,7 +120,7 @@ proptest! {
         let (first, end) = crate::convergence::range(logs);
         let logs = counted.iter().map(|counted| (*counted as f64).log10());
         let marks = logs.filter(|log| (first..=end).contains(log)).count();
-        let svg = convergence_figure("f", "c", &requirement, &[("m", &judgement)]).svg;
+        let svg = convergence_figure("f", "c", &requirement, &[own(&judgement)]).svg;
         prop_assert_eq!(svg.matches(&format!(" {}v-9", px(HIGH))).count(), marks, "{}", svg);
         prop_assert_eq!(svg.contains("looks of the rule"), !looks.is_empty());
     }
@@ -127,8 +140,8 @@ fn the_line_reaches_both_tails() {
     let numbers: Vec<Option<f64>> = (0..2001).map(|i| Some(f64::from(i))).collect();
     let requirement: Requirement = "x <= 1999 in 99 % at 90 %".parse().unwrap();
     let judgement = judged(&numbers, &requirement).unwrap();
-    let up = Up::new(&requirement, &[("m", &judgement)]);
-    let (across, far) = across(requirement.bound(), &[("m", &judgement)]);
+    let up = Up::new(&requirement, &[own(&judgement)]);
+    let (across, far) = across(requirement.bound(), &[own(&judgement)]);
     assert!(far.is_empty());
     for point in points(&judgement) {
         let y = up.y(point.share);
@@ -145,7 +158,7 @@ fn the_line_reaches_both_tails() {
     // A limit that is far away leaves the runs readable.
     let far: Requirement = "x <= 1e6 in 99 % at 90 %".parse().unwrap();
     let judgement = judged(&numbers, &far).unwrap();
-    let seen = read(&svg(&far, None, &[("m", &judgement)]));
+    let seen = read(&svg(&far, None, &[own(&judgement)]));
     assert!(seen.contains("is far off this axis"), "{seen}");
 }
 
@@ -162,7 +175,7 @@ fn shares_above_the_axis_leave_the_plot() {
         let last = judgement.convergence().last().unwrap().interval.upper();
         let expected = most > f64::max(1.8 * last, 2.2 * (1.0 - requirement.probability()));
         above += usize::from(expected);
-        let svg = convergence_figure("f", "c", &requirement, &[("m", &judgement)]).svg;
+        let svg = convergence_figure("f", "c", &requirement, &[own(&judgement)]).svg;
         let seen = read(&svg);
         assert_eq!(seen.contains("m: up to"), expected, "{failing:?}: {seen}");
         // Both ends of a line at the upper edge would be a line along it.
@@ -191,7 +204,7 @@ fn a_single_number_of_runs_has_an_interval() {
     ] {
         let judgement = judged(&numbers, requirement).unwrap();
         assert_eq!(judgement.convergence().len(), usize::from(drawn), "{numbers:?}");
-        let svg = convergence_figure("f", "c", requirement, &[("m", &judgement)]).svg;
+        let svg = convergence_figure("f", "c", requirement, &[own(&judgement)]).svg;
         let pen = format!("<path {} d=\"M", band_pen(0));
         let shapes = svg.split(&pen).skip(1).map(|rest| rest.split('"').next().unwrap());
         let bars: Vec<Vec<f64>> = shapes
@@ -222,7 +235,7 @@ fn limits_of_a_narrow_axis_are_told_apart() {
         let bound = Bound::Between(middle - half, middle + half);
         let requirement = Requirement::new("r", Measured::column("x"), bound, 0.9, 0.9).unwrap();
         let judgement = judged(&numbers, &requirement).unwrap();
-        let seen = read(&svg(&requirement, None, &[("m", &judgement)]));
+        let seen = read(&svg(&requirement, None, &[own(&judgement)]));
         let told: Vec<&str> =
             seen.split("limit ").skip(1).map(|rest| rest.lines().next().unwrap()).collect();
         assert!(told.len() >= 2 && told[0] != told[1], "{middle} {half}: {told:?}\n{seen}");

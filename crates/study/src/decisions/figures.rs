@@ -1,7 +1,7 @@
 //! The figures of requirements: the distribution of each quantity, and how the share that fails comes to rest.
 
-use gyradius_campaign::{Judgement, Looks, Requirement};
-use gyradius_report::{Drawing, Section, convergence_figure, distribution_figure};
+use gyradius_campaign::{Looks, Requirement};
+use gyradius_report::{Drawing, JudgedModel, Section, convergence_figure, distribution_figure};
 
 use crate::{
     head::{Head, Judged},
@@ -23,17 +23,21 @@ fn of_requirement(figure: &str, number: usize) -> String {
     format!("{figure}-{number}")
 }
 
-/// A figure of each requirement, numbered from 1, of what the runs of each model say.
+/// A figure of each requirement, numbered from 1, of what the runs of each model say. A requirement can be about one model alone, and
+/// this has the colour that it has in all other figures of the scenario.
 fn figures(
+    scenario: &impl Subject,
     head: &Head,
-    draw: impl Fn(usize, &Requirement, &[(&str, &Judgement)]) -> Drawing,
+    draw: impl Fn(usize, &Requirement, &[JudgedModel<'_>]) -> Drawing,
 ) -> Vec<Drawing> {
-    let mut of: Vec<(&Requirement, Vec<(&str, &Judgement)>)> = Vec::new();
-    for Judged { model, judgement, .. } in &head.requirements {
+    let mut of: Vec<(&Requirement, Vec<JudgedModel<'_>>)> = Vec::new();
+    for Judged { model: name, judgement, .. } in &head.requirements {
         let requirement = judgement.requirement();
+        let colour = scenario.model_names().position(|other| other == name).unwrap_or_default();
+        let model = JudgedModel { name, colour, judgement };
         match of.iter_mut().find(|(known, _)| *known == requirement) {
-            Some((_, models)) => models.push((model, judgement)),
-            None => of.push((requirement, vec![(model, judgement)])),
+            Some((_, models)) => models.push(model),
+            None => of.push((requirement, vec![model])),
         }
     }
     let numbered = of.iter().zip(1..);
@@ -54,7 +58,7 @@ pub(super) fn distributions(scenario: &impl Subject, head: &Head) -> Section {
                    Pearson’s bounds with the confidence 1 − (1 − c)/K, and between the points the band follows from the fact that \
                    a distribution function never decreases. The tolerance point is the bound of the table above. A point is a run \
                    as it is: tails are not fitted.";
-    let drawings = figures(head, |number, requirement, models| {
+    let drawings = figures(scenario, head, |number, requirement, models| {
         let (quantity, name) = (requirement.quantity(), requirement.name());
         let caption =
             format!("“{name}”: distribution of {quantity}, to the extreme runs of both tails");
@@ -75,7 +79,7 @@ pub(super) fn distributions(scenario: &impl Subject, head: &Head) -> Section {
 }
 
 /// How the shares that fail come to rest.
-pub(super) fn convergence(head: &Head) -> Section {
+pub(super) fn convergence(scenario: &impl Subject, head: &Head) -> Section {
     let share = "The share of the runs that fail each requirement among the first so many runs, in the order of their numbers. ";
     let intervals = match looks(head) {
         Looks::Once => {
@@ -88,7 +92,7 @@ pub(super) fn convergence(head: &Head) -> Section {
         }
     };
     let reading = format!("{share}{intervals}");
-    let drawings = figures(head, |number, requirement, models| {
+    let drawings = figures(scenario, head, |number, requirement, models| {
         let caption = format!("Runs that fail “{}” among the first so many", requirement.name());
         let name = of_requirement(CONVERGENCE, number);
         convergence_figure(&name, &caption, requirement, models)

@@ -1,7 +1,7 @@
 //! What the page says of requirements on quantities that runs may have no value of.
 
 use crate::{Options, Scenario, Study};
-use std::fs;
+use std::{collections::BTreeSet, fs};
 
 /// Two bodies that part along one line, with requirements.
 fn parting(requirements: &str) -> Scenario {
@@ -53,6 +53,48 @@ fn figures_say_for_how_many_looks_they_hold() {
         assert_eq!(band.contains("takes no account"), often, "{band}");
         assert_eq!(distribution.contains("if one looks once"), often);
     }
+}
+
+/// Requirements about any one model, and about all: in all figures of the study that have a legend, each model has one colour.
+#[test]
+fn models_have_one_colour_in_all_figures() {
+    let base = Scenario::peck_2003().unwrap().with_runs(40).unwrap();
+    let names: Vec<&str> = base.model_names().collect();
+    let required = |about: Option<&&str>| {
+        let model = about.map_or_else(String::new, |name| format!("model = {name:?}\n"));
+        let name = about.unwrap_or(&"all");
+        format!(
+            "[[requirements]]\nname = {name:?}\nquantity = \"nutation_deg\"\nat_most = 5.0\nprobability = 0.5\nconfidence = 0.9\n{model}"
+        )
+    };
+    let abouts = names.iter().rev().map(Some).chain([None]);
+    let text = format!("{}\n{}", base.to_toml(), abouts.map(required).collect::<String>());
+    let scenario = Scenario::from_toml(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    Study::run(&scenario, &Options::to(out.clone()), &|_| {}).unwrap();
+    let figures = fs::read_dir(out.join("figures")).unwrap();
+    let figures: Vec<String> = figures
+        .map(|file| file.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "svg"))
+        .map(|path| fs::read_to_string(path).unwrap())
+        .collect();
+    let mut colours = BTreeSet::new();
+    for name in &names {
+        // The swatch of a legend stands before the name.
+        let of = figures.iter().filter_map(|svg| {
+            let (before, _) = svg.split_once(&format!(">{name}<"))?;
+            let (_, swatch) = before.rsplit_once("<g transform")?;
+            let (swatch, between) = swatch.split_once("</g>")?;
+            let is_own = between.matches("<text").count() == 1;
+            is_own.then(|| swatch.split_once("=\"#").unwrap().1[..6].to_owned())
+        });
+        let of: Vec<String> = of.collect();
+        // Both figures of two requirements, and histograms.
+        assert!(of.len() > 4 && of.iter().all(|colour| *colour == of[0]), "{name}: {of:?}");
+        colours.insert(of[0].clone());
+    }
+    assert_eq!(colours.len(), names.len(), "{colours:?}");
 }
 
 /// The worst runs of vehicles are those of first flights, which is said, and not of plain runs or of flights that have nothing in common.
