@@ -150,7 +150,8 @@ impl Overview {
         self.warning_of([]).led_by(sections)
     }
 
-    /// Of which quantities there is nothing to draw, and why.
+    /// Of which quantities there is nothing to draw, and why. Runs can have no value, and those that failed infinite ones, which are in no
+    /// sample.
     fn constants(&self) -> impl Iterator<Item = String> {
         let [mut constant, mut infinite, mut without]: [Vec<String>; 3] = Default::default();
         for quantity in self.quantities.iter().filter(|quantity| !quantity.varies()) {
@@ -164,9 +165,9 @@ impl Overview {
             names.push(quantity.column.clone());
         }
         let told = [
-            ("have the same value in all runs of each model", constant),
+            ("have the same value in all runs of each model that have a finite one", constant),
             ("have a value that is not finite", infinite),
-            ("have no value in any run", without),
+            ("have no finite value in any run", without),
         ];
         let told = told.into_iter().filter(|(_, names)| !names.is_empty());
         told.map(|(why, names)| {
@@ -339,131 +340,4 @@ pub fn spread(sample: Option<&SampleSummary>, runs: u64) -> PageCell {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use gyradius_campaign::{Cell, Column, Failure};
-    use proptest::prelude::*;
-
-    fn number() -> impl Strategy<Value = Option<f64>> {
-        prop_oneof![
-            3 => (-5.0..5.0).prop_map(Some),
-            1 => Just(None),
-            1 => prop::sample::select(vec![f64::NAN, f64::INFINITY, 1e300, -1e300, 0.0]).prop_map(Some),
-        ]
-    }
-
-    /// However many numbers there are, each has its panel, or the page says that it has none; figures are as high as a sheet
-    /// of paper at most, and have names that are known before the runs.
-    #[test]
-    fn every_number_has_a_panel_or_is_named() {
-        for numbers in [1, 15, 16, 24, 40, 300, 301, 340] {
-            let column = |i: i32| Column::number(format!("x{i}x"), "m", "A number.");
-            let columns = (0..numbers).map(column).collect();
-            let mut table = Table::new("own", 0, columns).unwrap();
-            for run in 0..3 {
-                table
-                    .push(None, (0..numbers).map(|i| Cell::from(Some(f64::from(run * i)))))
-                    .unwrap();
-            }
-            let overview = Overview::new("", &[table]).unwrap();
-            let names: Vec<String> = Overview::figure_names(numbers as usize).collect();
-            let svgs: Vec<String> = overview.figures.iter().map(Figure::svg).collect();
-            assert!(overview.figures.iter().all(|figure| names.contains(&figure.name)));
-            for svg in &svgs {
-                let side = |name: &str| -> f64 {
-                    svg.split_once(&format!(" {name}=\""))
-                        .unwrap()
-                        .1
-                        .split('"')
-                        .next()
-                        .unwrap()
-                        .parse()
-                        .unwrap()
-                };
-                assert!(
-                    side("height") / side("width") < 1.3,
-                    "{} {}",
-                    side("height"),
-                    side("width")
-                );
-            }
-            let page = overview.document().markdown();
-            let without: Vec<i32> = (1..numbers)
-                .filter(|i| !svgs.iter().any(|svg| svg.contains(&format!("x{i}x"))))
-                .collect();
-            assert_eq!(without.len(), (numbers as usize).saturating_sub(301));
-            let said = match without[..] {
-                [] => !page.contains("in no figure"),
-                [only] => page.contains(&format!("x{only}x is in no figure")),
-                [first, .., last] => page.contains(&format!(
-                    "The {} quantities from x{first}x to x{last}x",
-                    without.len()
-                )),
-            };
-            assert!(said, "{numbers}: {page}");
-            // The first is always zero.
-            let same = "which have the same value in all runs of each model: x0x.";
-            assert!(page.contains(same), "{numbers}: {page}");
-        }
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(64))]
-
-        /// Any tables, names that are markup, failures: the page from what was written is the same.
-        #[test]
-        fn what_reads_back_gives_the_same_page(
-            runs in prop::collection::vec((number(), number(), any::<bool>()), 0..40),
-            models in 1_usize..4,
-        ) {
-            let columns = || vec![
-                Column::number("x_<m>", "m", "A \"number\"."),
-                Column::number("y", "1", "Another."),
-                Column::new("text", Kind::Text, "No number."),
-            ];
-            let tables: Vec<Table> = (0..models)
-                .map(|model| {
-                    let mut table = Table::new(&format!("<model & {model}>"), 0, columns()).unwrap();
-                    for (x, y, failed) in &runs {
-                        let failure = failed.then(|| Failure::new("<kind>", "<message>"));
-                        table.push(failure, [(*x).into(), (*y).into(), Cell::Null]).unwrap();
-                    }
-                    table
-                })
-                .collect();
-            let overview = Overview::new("a <title>", &tables).unwrap();
-            let text = serde_json::to_string(&overview).unwrap();
-            let read: Overview = serde_json::from_str(&text).unwrap();
-            // Infinite means are null in JSON; whoever writes a page makes it from what is read.
-            let again: Overview = serde_json::from_str(&serde_json::to_string(&read).unwrap()).unwrap();
-            prop_assert_eq!(again.document(), read.document());
-            let page = read.document().html();
-            prop_assert!(!page.contains("<model &") && page.contains("&lt;model &amp; 0&gt;"));
-            let failed = runs.iter().filter(|run| run.2).count();
-            prop_assert_eq!(page.contains("of the runs failed"), failed > 0);
-            // Of how many runs the statistics are is said where not all have a value.
-            let succeeded = runs.iter().filter(|run| !run.2).count();
-            // What was drawn is there in runs that failed, too.
-            let counts = [
-                runs.iter().filter(|run| run.0.is_some()).count(),
-                runs.iter().filter(|run| run.1.is_some()).count(),
-            ];
-            for n in 1..=succeeded {
-                let said = page.matches(&format!(">of {n} of {succeeded} runs<")).count();
-                let some = counts.iter().filter(|count| **count == n && n < succeeded).count();
-                prop_assert_eq!(said, models * some, "{}", page);
-            }
-            // Each number varies, or is named as one that there is no figure of.
-            for name in ["x_<m>", "y"] {
-                let quantity = read.quantities.iter().find(|quantity| quantity.column == name).unwrap();
-                let escaped = name.replace('<', "&lt;").replace('>', "&gt;");
-                let named = page.split("There is no figure of").skip(1);
-                let mut named = named.filter_map(|text| text.split("</p>").next()?.split(": ").last());
-                let is_named = named.any(|names| {
-                    names.trim_end_matches('.').split(", ").any(|other| other == escaped)
-                });
-                prop_assert_eq!(is_named, !quantity.varies(), "{}", name);
-            }
-        }
-    }
-}
+mod tests;
