@@ -43,7 +43,8 @@ fn trace(entries: [f64; 6]) -> f64 {
 
 /// That the law of the mass centre of a body is far from the nominal mass centre, from which it is told.
 fn centre(scenario: &Scenario, which: Body, body: &UncertainBody) -> Option<Alert> {
-    let (mut mean_m, mut is_beyond) = ([0.0; 3], false);
+    // What an uncertain axis adds may be chance, and is no part of the distance.
+    let (mut mean_m, mut beyond) = ([0.0; 3], [0.0; 3]);
     for dispersed in scenario.dispersions().all() {
         let Target::Body(of, BodyParameter::MassCentre, axis) = dispersed.target else { continue };
         if of != which {
@@ -51,12 +52,14 @@ fn centre(scenario: &Scenario, which: Body, body: &UncertainBody) -> Option<Aler
         }
         let (mean, deviation) = (dispersed.law.mean(), dispersed.law.deviation());
         mean_m[axis] = mean;
-        is_beyond |= mean.abs() > DEVIATIONS * deviation;
+        if mean.abs() > DEVIATIONS * deviation {
+            beyond[axis] = mean;
+        }
     }
-    let [x, y, z] = mean_m;
+    let [x, y, z] = beyond;
     let size_m = (0.5 * trace(body.nominal().as_inertia_matrix().entries())
         / body.moving().body().mass_kg())
     .sqrt();
-    let is_far = is_beyond && x.hypot(y).hypot(z) > SHARE * size_m;
+    let is_far = x.hypot(y).hypot(z) > SHARE * size_m;
     is_far.then(|| Alert::CentreOffNominal { body: which.name().to_owned(), mean_m })
 }

@@ -431,4 +431,31 @@ proptest! {
             prop_assert!(place < page.find("What the payload does").unwrap());
         }
     }
+    /// Means and deviations of each axis of a mass centre at will: only axes whose means are beyond their own deviations count.
+    #[test]
+    fn axes_of_a_mass_centre_count_alone(
+        axes in prop::array::uniform3((
+            prop_oneof![Just(0.0), -0.3..0.3_f64, -1e-5..1e-5_f64],
+            prop_oneof![Just(1e-9), 1e-3..0.2_f64],
+        )),
+    ) {
+        let base = ordinary(2, 0.01, NORMAL);
+        let law = |(mean, sigma)| format!("{{ mean = {mean:?}, sigma = {sigma:?} }}");
+        let centre: toml::Table =
+            format!("mass_centre_m = [{}]", axes.map(law).join(", ")).parse().unwrap();
+        let mut table: toml::Table = base.to_toml().parse().unwrap();
+        table["payload"]["dispersion"].as_table_mut().unwrap().extend(centre);
+        let scenario = Scenario::from_toml(&toml::to_string(&table).unwrap()).unwrap();
+        let [mass, trace] = [3000.0, 2000.0 * (1.0 + 1.1 + 0.9)];
+        let known = axes.iter().filter(|(mean, sigma)| mean.abs() > 3.0 * sigma);
+        let squares: f64 = known.map(|(mean, _)| mean * mean).sum();
+        let off = squares.sqrt() / f64::sqrt(0.5 * trace / mass);
+        prop_assume!((off - 0.1).abs() > 1e-9);
+        let alerts = crate::off_nominal::off_nominal(&scenario, std::iter::empty());
+        let told = alerts.iter().find_map(|alert| match alert {
+            Alert::CentreOffNominal { mean_m, .. } => Some(*mean_m),
+            _ => None,
+        });
+        prop_assert_eq!(told, (off > 0.1).then(|| axes.map(|(mean, _)| mean)));
+    }
 }

@@ -12,7 +12,7 @@ use crate::{Options, Scenario, SimulatorScenario, subject::Subject};
 
 /// How many vehicles there are, and how often each flies; none of plain runs.
 const SIZES: [Option<[i64; 2]>; 5] =
-    [None, Some([1, 30]), Some([2, 15]), Some([4, 250]), Some([30, 1])];
+    [None, Some([1, 30]), Some([2, 15]), Some([4, 60]), Some([30, 1])];
 
 /// Drawn for the vehicle of which there is one, a mass is the same in all flights: the alert says why.
 #[test]
