@@ -6,6 +6,7 @@ mod goodness;
 mod matching;
 mod names;
 mod notes;
+mod order;
 mod relabel;
 mod root;
 mod round;
@@ -18,12 +19,12 @@ use gyradius_attitude::{FitError, RadiallyConstrainedGaussian};
 use gyradius_dispersion::{PrincipalDispersion, ScalarRoots, ScalarRootsError};
 use gyradius_inertia::{Inertia, RootSecondMoments, SecondMoments};
 use nalgebra::{Matrix3, UnitQuaternion};
-use std::cmp::Ordering;
 
 #[cfg(feature = "serde")]
 use crate::read::belong;
 use matching::matched;
 use names::Names;
+use order::order;
 use relabel::{Relabeling, Sample};
 use round::{Roundness, straightened};
 
@@ -214,6 +215,14 @@ impl PrincipalFit {
     /// # Errors
     /// Fewer than 13 samples, a point or a far larger one among them, or moments out of range.
     pub fn new(samples: &[Inertia]) -> Result<Self, PrincipalFitError> {
+        Self::told_apart(samples, |_| [0.0; 4])
+    }
+
+    /// The same of samples of which more is known: numbers of the order of one, which tell those apart that have the same inertia.
+    pub(crate) fn told_apart(
+        samples: &[Inertia],
+        others: impl Fn(usize) -> [f64; 4],
+    ) -> Result<Self, PrincipalFitError> {
         if samples.len() < NEEDED {
             return Err(PrincipalFitError::TooFew { count: samples.len() });
         }
@@ -225,8 +234,7 @@ impl PrincipalFit {
             return Err(PrincipalFitError::Large { index, sum: sums[index], median });
         }
         // In an order of their own, so that the same samples have the same fit in any order.
-        let mut order: Vec<usize> = (0..samples.len()).collect();
-        order.sort_by(|a, b| by_entries(&samples[*a], &samples[*b]));
+        let order = order(samples, others);
         let sorted: Vec<Inertia> = order.iter().map(|row| samples[*row]).collect();
         let apart: Vec<Sample> = sorted.iter().map(take_apart).collect();
         let matched = matched(&apart, &mean_axes(&sorted));
@@ -321,11 +329,6 @@ gyradius_dispersion::written!(
         fit
     }
 );
-
-fn by_entries(a: &Inertia, b: &Inertia) -> Ordering {
-    let pairs = a.entries().into_iter().zip(b.entries());
-    pairs.map(|(a, b)| a.total_cmp(&b)).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
-}
 
 fn deviations(samples: &[Inertia]) -> [f64; 6] {
     let rows: Vec<[f64; 6]> = samples.iter().map(Inertia::entries).collect();

@@ -112,9 +112,15 @@ impl MassPropertiesFit {
                 .map_err(|error| MassPropertiesFitError::Body { index, error })
         };
         let inertias = bodies.iter().enumerate().map(one).collect::<Result<Vec<Inertia>, _>>()?;
-        let lengths = PrincipalFit::new(&inertias)?;
-        // Of one kilogram each, bodies in another unit of mass are like all others.
         let masses: Vec<f64> = bodies.iter().map(MassProperties::mass_kg).collect();
+        let count = bodies.len() as f64;
+        let mean_mass: f64 = masses.iter().map(|mass| mass / count).sum();
+        let length = inertias.iter().map(|i| i.matrix().trace() / count).sum::<f64>().sqrt();
+        let lengths = PrincipalFit::told_apart(&inertias, |row| {
+            let [x, y, z] = bodies[row].mass_centre_m().into();
+            [masses[row] / mean_mass, x / length, y / length, z / length]
+        })?;
+        // Of one kilogram each, bodies in another unit of mass are like all others.
         if let Some((index, median)) = far_larger(&masses) {
             return Err(MassPropertiesFitError::Large { index, mass_kg: masses[index], median });
         }

@@ -1,5 +1,7 @@
 //! The fit of the joint law: coverage, round trips, controls.
 
+mod last_digits;
+
 use gyradius_attitude::{RadiallyConstrainedGaussian, UniformAttitude};
 use gyradius_dispersion::{AxesLaw, FixedAttitude};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
