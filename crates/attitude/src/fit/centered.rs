@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix4, SMatrix, SVector, Vector4};
 
-use super::{SMALLEST_VARIANCE, climb::Evaluation};
+use super::{SMALLEST_VARIANCE, climb::Evaluation, rounding::end};
 use crate::{fisher_bingham::centring_shift, jacobi};
 
 /// The law is ∝ exp of a linear combination of w_i, −½ w_i² and −w_i w_j. As |v| = 1 one of the 14
@@ -14,6 +14,9 @@ pub(crate) const PRODUCTS: usize = 4;
 /// The products, in their order.
 pub(crate) const PAIRS: [(usize, usize); 10] =
     [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2), (3, 0), (3, 1), (3, 2), (3, 3)];
+
+/// Two maxima of a density whose logarithms differ by no more than twice this are equally great.
+const AS_GREAT: f64 = 1e-6;
 
 pub(crate) type Statistics = SVector<f64, STATISTICS>;
 
@@ -173,7 +176,14 @@ impl Centered {
             std::array::from_fn(|j| if b[j] == 0.0 { 0.0 } else { b[j] / lambda[j] });
         // Exact where d is lost beside rounding, and right where b has no part along that axis.
         let others: f64 = (0..4).filter(|&j| j != lowest).map(|j| m[j] * m[j]).sum();
-        m[lowest] = (1.0 - others).max(0.0).sqrt().copysign(m[lowest]);
+        let along = (1.0 - others).max(0.0).sqrt();
+        // Where that part is rounding there are two maxima, and no sign of it.
+        let side = if along * b[lowest].abs() > AS_GREAT {
+            b[lowest]
+        } else {
+            end(&self.axes.column(lowest).into_owned())
+        };
+        m[lowest] = along.copysign(side);
         (lambda, Vector4::from(m).normalize())
     }
 

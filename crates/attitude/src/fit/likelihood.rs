@@ -1,12 +1,13 @@
 //! The likelihood of attitudes under exp(−½ xᵀPx + bᵀx), its gradient and its Hessian.
 
 use nalgebra::{Matrix4, SMatrix, UnitQuaternion, Vector4};
-use std::cmp::Ordering;
+use std::cmp::{Ordering, Reverse};
 
 use super::{
     centered::{Centered, PAIRS, PRODUCTS, STATISTICS, Statistics},
     climb::Evaluation,
     means::Means,
+    rounding::{end, sign, whole},
 };
 use crate::{
     contour::{C64, Contour},
@@ -88,7 +89,7 @@ impl Sample {
                 means.push(mean);
             }
         }
-        means.sort_by(|a, b| b.norm_squared().total_cmp(&a.norm_squared()));
+        means.sort_by_key(|mean| Reverse(whole(mean.norm_squared())));
         means
     }
 
@@ -100,7 +101,7 @@ impl Sample {
     fn signed_mean(&self, direction: &Vector4<f64>) -> Vector4<f64> {
         let mut sum = Vector4::zeros();
         for u in self.points() {
-            sum += u * 1.0_f64.copysign(direction.dot(&u));
+            sum += u * sign(direction.dot(&u));
         }
         sum / self.len()
     }
@@ -186,15 +187,13 @@ impl Sample {
 /// The quaternions in an order and with signs of their own, so that the same attitudes have the same fit: rounding can decide
 /// which of several maxima a search comes to.
 fn sorted(attitudes: &[UnitQuaternion<f64>]) -> Vec<Vector4<f64>> {
-    let signed = |q: &UnitQuaternion<f64>| {
-        let last = q.coords.iter().rfind(|x| **x != 0.0).copied().unwrap_or_default();
-        // A zero has a sign too.
-        q.coords * 1.0_f64.copysign(last) + Vector4::zeros()
-    };
-    let mut points: Vec<Vector4<f64>> = attitudes.iter().map(signed).collect();
+    let mut points: Vec<Vector4<f64>> =
+        attitudes.iter().map(|q| q.coords * end(&q.coords)).collect();
     let order = |a: &Vector4<f64>, b: &Vector4<f64>| {
+        let rounded = a.map(whole).iter().cmp(b.map(whole).iter());
+        // Sums have the same last digit.
         let pairs = a.iter().zip(b.iter());
-        pairs.fold(Ordering::Equal, |order, (a, b)| order.then(a.total_cmp(b)))
+        pairs.fold(rounded, |order: Ordering, (a, b)| order.then(a.total_cmp(b)))
     };
     points.sort_by(order);
     points

@@ -8,6 +8,7 @@ use super::{
     centered::turn_of_last_axis,
     likelihood::Sample,
     point::Point,
+    rounding::{sign, whole},
 };
 use crate::{jacobi, vector};
 
@@ -56,8 +57,9 @@ fn outermost(sample: &Sample) -> Vec<Vector4<f64>> {
         let across = u.fixed_rows::<3>(0) * 1.0_f64.copysign(u[3]);
         for (line, pair) in lines.iter().zip(ends.chunks_exact_mut(2)) {
             let reach = line.dot(&across);
-            let end = &mut pair[usize::from(reach > 0.0)];
-            if reach.abs() > end.0 {
+            let end = &mut pair[usize::from(sign(reach) > 0.0)];
+            // The first of those that lie as far out but for rounding.
+            if whole(reach.abs()) > whole(end.0) {
                 *end = (reach.abs(), Some(index));
             }
         }
@@ -86,7 +88,7 @@ impl Lobes {
     fn around(sample: &Sample, seed: &Vector4<f64>) -> Self {
         Self {
             heavy: Vector4::w() / sample.scale[3],
-            light: seed * 1.0_f64.copysign(seed[3]),
+            light: seed * sign(seed[3]),
             precision: Matrix3::identity(),
             share: FIRST_SHARE,
         }
@@ -129,7 +131,7 @@ impl Lobes {
             let unscaled = Matrix4::from_fn(|i, j| m[(i, j)] * scale[i] * scale[j]);
             largest_axis(&unscaled)
         });
-        light_axis *= 1.0_f64.copysign(heavy_axis.dot(&light_axis));
+        light_axis *= sign(heavy_axis.dot(&light_axis));
         let mut next = Self {
             heavy: heavy_axis.component_div(&scale),
             light: light_axis.component_div(&scale),

@@ -10,6 +10,7 @@ mod likelihood;
 mod lobes;
 mod means;
 mod point;
+mod rounding;
 mod search;
 #[cfg(test)]
 mod tests;

@@ -7,6 +7,7 @@ use super::{
     centered::{Centered, PAIRS, PRODUCTS, STATISTICS, Statistics, turn_of_last_axis},
     climb::{Evaluation, Hill, restrict},
     likelihood::Sample,
+    rounding::sign,
 };
 
 /// The least that a search for laws about an axis begins with for a precision, over the sample's.
@@ -50,7 +51,7 @@ impl Point {
     pub(crate) fn of(law: &Centered) -> Self {
         let (lambda, m) = law.gaussian();
         let mean = law.axes * m;
-        let sign = 1.0_f64.copysign(mean[3]);
+        let sign = sign(mean[3]);
         let frame = turn_of_last_axis(&(mean * sign));
         let local = law.axes.tr_mul(&frame) * sign;
         let p = local.tr_mul(&(Matrix4::from_diagonal(&lambda.into()) * local));

@@ -1,6 +1,7 @@
 //! The maxima of the likelihood within the families, and the interval of the radial variance.
 
 use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
+use std::cmp::Reverse;
 
 use super::{
     FitError, RadialVariance,
@@ -9,6 +10,7 @@ use super::{
     likelihood::{Sample, root_lines},
     lobes,
     point::{PARAMETERS, Point, SLOPE, Sheared, TAU},
+    rounding::whole,
 };
 
 /// The 95 % quantile of χ² with one degree of freedom.
@@ -178,7 +180,7 @@ impl<'a> Search<'a> {
             .map(|law| (self.sample.height(&law), law))
             .filter(|(height, _)| height.is_finite())
             .collect();
-        ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+        ranked.sort_by_key(|(height, _)| Reverse(whole(*height)));
         ranked.into_iter().take(count).map(|(_, law)| law).collect()
     }
 

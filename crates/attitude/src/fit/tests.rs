@@ -1,5 +1,7 @@
 //! Fits against laws that are known.
 
+mod mirrors;
+
 use super::{
     centered::{STATISTICS, Statistics},
     climb::{Evaluation, Hill},

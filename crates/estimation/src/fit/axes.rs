@@ -5,6 +5,7 @@ use gyradius_statistics::tail;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::{
+    LIKELIER,
     matching::{mean_attitude, vector_part},
     relabel::Sample,
     root::RootFit,
@@ -122,7 +123,8 @@ impl AxesFit {
             let height = ln_likelihood(&fit.law) - less_free;
             (fit, height)
         });
-        let Some((free, height)) = free.max_by(|(_, a), (_, b)| a.total_cmp(b)) else {
+        let free = free.reduce(|best, next| if next.1 > best.1 + LIKELIER { next } else { best });
+        let Some((free, height)) = free else {
             let widest = determined.law.clone();
             return Ok((determined, told, widest));
         };

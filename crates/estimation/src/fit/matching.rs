@@ -15,7 +15,7 @@ pub(super) const FLOOR: f64 = 1e-6;
 
 /// Namings whose nearness or cost differ by less than this, or by this share, differ by rounding: the first of them is taken,
 /// so that the last digits of samples do not decide.
-const TIE: f64 = 1e-9;
+pub(super) const TIE: f64 = 1e-9;
 
 /// Samples whose axes are named alike.
 #[derive(Clone, Debug)]

@@ -22,7 +22,7 @@ use nalgebra::{Matrix3, UnitQuaternion};
 
 #[cfg(feature = "serde")]
 use crate::read::belong;
-use matching::matched;
+use matching::{TIE, matched};
 use names::Names;
 use order::order;
 use relabel::{Relabeling, Sample};
@@ -430,9 +430,9 @@ fn mean_axes(samples: &[Inertia]) -> UnitQuaternion<f64> {
         .map_or_else(|_| UnitQuaternion::identity(), |mean| mean.principal_axes().attitude())
 }
 
-/// The naming g for which g ⊗ `from` is nearest to `to`.
+/// The naming g for which g ⊗ `from` is nearest to `to`, the first of those that are as near.
 fn nearest(from: &UnitQuaternion<f64>, to: &UnitQuaternion<f64>) -> &'static Relabeling {
-    let all = Relabeling::all();
     let score = |g: &Relabeling| (g.turn * from).coords.dot(&to.coords).abs();
-    all.iter().max_by(|a, b| score(a).total_cmp(&score(b))).unwrap_or(&all[0])
+    let [first, others @ ..] = Relabeling::all();
+    others.iter().fold(first, |best, g| if score(g) > score(best) + TIE { g } else { best })
 }
