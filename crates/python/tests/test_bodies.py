@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import URDF, bodies, inertias, rotations
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import gyradius
@@ -143,6 +143,31 @@ def test_plates_and_rods_of_32_bits_stay_bodies_however_they_are_given(seed: int
         # Moved by no more than what 32 bits leave of the numbers that were given.
         assert (np.abs(found.inertia - flat).max(axis=(1, 2)) <= 3e-5 * rounded).all(), name
         assert (found.mass == np.asarray(found.mass, np.float32)).all() or name == "inertia"
+
+
+@settings(max_examples=15)
+@given(st.integers(0, 2**32), st.sampled_from(["<f4", ">f4"]), st.floats(-6.0, 6.0))
+def test_arrays_of_32_bits_are_fitted_and_held_as_the_bodies_of_them(seed: int, dtype: str, size: float) -> None:
+    """Plates and others of any size, whose rounding alone takes them from what bodies have; what is known of them is that of 64 bits."""
+    rng = np.random.default_rng(seed)
+    roots = np.diag([3.0, 2.0, 1.0]) + 0.2 * rng.normal(size=(60, 3, 3))
+    roots[rng.random(60) < 0.5, :, 2] = 0.0
+    second = 10.0**size * roots @ roots.transpose(0, 2, 1)
+    some = np.trace(second, axis1=1, axis2=2)[:, None, None] * np.eye(3) - second
+    table = np.zeros((60, 10))
+    table[:, 0] = 10.0**size * rng.uniform(1.0, 2.0, 60)
+    table[:, 1:4] = rng.normal(size=(60, 3))
+    table[:, 4:] = [[one[at] for at in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))] for one in some]
+    narrow, matrices = table.astype(dtype), some.astype(dtype)
+    made = MassProperties.of(narrow)
+    assert made.is_realizable.all()
+    assert gyradius.MassPropertiesLaw.fit(narrow).law == gyradius.MassPropertiesLaw.fit(made).law
+    assert gyradius.InertiaLaw.fit(matrices).law == gyradius.InertiaLaw.fit(made.inertia).law
+    region = gyradius.ellipsoid(semi_axes=[20.0, 20.0, 20.0])
+    assert (region.holds(narrow) == region.holds(made)).all() and (region.holds(made) == 1.0).all()
+    # In 64 bits nothing is mended.
+    wide = narrow.astype(float)
+    assert (region.holds(wide) == np.where(gyradius.is_realizable(MassProperties.of(wide).inertia), region.holds(made), 0.0)).all()
 
 
 def test_what_is_no_body_for_more_than_rounding_stays_none_in_32_bits() -> None:

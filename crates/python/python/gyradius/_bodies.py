@@ -108,15 +108,8 @@ class MassProperties:
     @classmethod
     def of(cls, array: ArrayLike) -> MassProperties:
         """The bodies of an array of shape (..., 10), in the order of `gyradius.COLUMNS`."""
-        # An array has no names any more.
-        own_order("array", array)
-        given = own_numbers("array", array)
-        flat, lead = rows("array", given, (10,))
-        bodies = flat.copy()
-        if is_single(given):
-            rounded = of_rounded(bodies[:, MATRIX].reshape(-1, 3, 3))
-            bodies[:, 4:] = np.stack([rounded[:, i, j] for i, j in ENTRIES], axis=1)
-        return cls._of(bodies.reshape(*lead, 10))
+        bodies, lead = body_rows("array", array)
+        return cls._of(bodies.copy().reshape(*lead, 10))
 
     @classmethod
     def _of(cls, array: NDArray[np.float64]) -> MassProperties:
@@ -371,9 +364,9 @@ class Region:
         """As it stands in files."""
         return json.loads(self._form)
 
-    def holds(self, bodies: MassProperties) -> Any:
+    def holds(self, bodies: MassProperties | ArrayLike) -> Any:
         """Whether matter inside can have the mass properties: 1 if it can, 0 if not, and NaN where neither was shown."""
-        flat, lead = rows("bodies", bodies, (10,))
+        flat, lead = body_rows("bodies", bodies)
         return out(_core.region_holds(self._form, flat), lead)
 
     def __eq__(self, other: object) -> bool:
@@ -489,6 +482,18 @@ def pseudo_inertia(bodies: MassProperties | ArrayLike) -> NDArray[np.float64]:
 def log_cholesky(bodies: MassProperties | ArrayLike) -> NDArray[np.float64]:
     """The log-Cholesky coordinates of bodies, or of an array (..., 10): shape (..., 10). See `MassProperties.log_cholesky`."""
     return _bodies(bodies).log_cholesky
+
+
+def body_rows(name: str, bodies: MassProperties | ArrayLike) -> tuple[NDArray[np.float64], tuple[int, ...]]:
+    """The ten numbers of bodies as rows, of floats of 32 bits with what `of_rounded` makes of the inertias, and the shape of the bodies."""
+    # An array has no names any more.
+    own_order(name, bodies)
+    given = own_numbers(name, bodies)
+    flat, lead = rows(name, given, (10,))
+    if is_single(given):
+        rounded = of_rounded(flat[:, MATRIX].reshape(-1, 3, 3))
+        flat = np.concatenate([flat[:, :4], *(rounded[:, i, j, None] for i, j in ENTRIES)], axis=1)
+    return flat, lead
 
 
 def _exchanged(matrices: NDArray[np.float64], share: float) -> NDArray[np.float64]:

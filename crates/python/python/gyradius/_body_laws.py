@@ -11,7 +11,7 @@ import numpy as np
 from gyradius import _core
 from gyradius._arrays import form, listed, numbers, out, real, rows, text, three
 from gyradius._attitude_laws import AttitudeLaw
-from gyradius._bodies import MassProperties, Region
+from gyradius._bodies import MassProperties, Region, body_rows
 from gyradius._inertia_laws import InertiaLaw
 from gyradius._law import Fit, LawOfBodies, Matrix, known, make, of_kind, picture, short, vector
 from gyradius._rng import draws_of
@@ -213,7 +213,7 @@ class MassPropertiesLaw(LawOfBodies):
     @staticmethod
     def fit(bodies: MassProperties | ArrayLike) -> Fit[MassPropertiesLaw]:
         """The joint law of samples (n, 10), of 13 bodies or more."""
-        return MassPropertiesLaw._fit("joint", _core.fit_bodies(rows("bodies", bodies, (10,))[0]))
+        return MassPropertiesLaw._fit("joint", _core.fit_bodies(body_rows("bodies", bodies)[0]))
 
     def _repr_html_(self) -> str:
         return picture(self, self.rvs(500, rng=0).inertia)

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import form, out, rows, text, three
+from gyradius._arrays import form, is_single, out, own_numbers, rows, text, three
 from gyradius._attitude_laws import AttitudeLaw
+from gyradius._inertia import of_rounded
 from gyradius._law import Fit, LawOfBodies, Matrix, known, make, of_kind, picture, short, vector
 from gyradius._rng import draws_of
 from gyradius._scalar_laws import scalar
@@ -131,7 +132,11 @@ class InertiaLaw(LawOfBodies):
     @staticmethod
     def fit(inertia: ArrayLike) -> Fit[InertiaLaw]:
         """The law of Peck (2003) of samples (n, 3, 3), of 13 bodies or more."""
-        return InertiaLaw._fit("of_form", _core.fit_inertias(rows("inertia", inertia, (3, 3))[0]))
+        given = own_numbers("inertia", inertia)
+        flat, _ = rows("inertia", given, (3, 3))
+        if is_single(given):
+            flat = of_rounded(flat.reshape(-1, 3, 3)).reshape(-1, 9)
+        return InertiaLaw._fit("of_form", _core.fit_inertias(flat))
 
     def _repr_html_(self) -> str:
         return picture(self, self.rvs(500, rng=0))
