@@ -104,13 +104,17 @@ impl Correlation {
                 return refused(pair, CorrelationProblem::Twice);
             }
         }
-        let mut members: Vec<usize> = pairs.iter().flat_map(|&(a, b, _)| [a, b]).collect();
+        // What a coefficient of zero ties stays as it is.
+        let tied: Vec<usize> = (0..pairs.len()).filter(|pair| pairs[*pair].2 != 0.0).collect();
+        let mut members: Vec<usize> =
+            tied.iter().flat_map(|pair| [pairs[*pair].0, pairs[*pair].1]).collect();
         members.sort_unstable();
         members.dedup();
         let place = |index: usize| members.partition_point(|m| *m < index);
         let n = members.len();
         let mut matrix = DMatrix::<f64>::identity(n, n);
-        for &(a, b, value) in pairs {
+        for pair in &tied {
+            let (a, b, value) = pairs[*pair];
             matrix[(place(a), place(b))] = value;
             matrix[(place(b), place(a))] = value;
         }
@@ -120,10 +124,12 @@ impl Correlation {
             let eigenvalue = eigen.eigenvalues[least];
             if !(eigenvalue >= -ROUNDING * n as f64) {
                 let v = eigen.eigenvectors.column(least);
-                let part = |&(a, b, value): &(usize, usize, f64)| value * v[place(a)] * v[place(b)];
-                let worst =
-                    (0..pairs.len()).min_by(|a, b| part(&pairs[*a]).total_cmp(&part(&pairs[*b])));
-                let pair = worst.unwrap_or(0);
+                let part = |pair: usize| {
+                    let (a, b, value) = pairs[pair];
+                    value * v[place(a)] * v[place(b)]
+                };
+                let worst = tied.iter().min_by(|a, b| part(**a).total_cmp(&part(**b)));
+                let pair = worst.copied().unwrap_or(0);
                 let value = pairs[pair].2;
                 return refused(pair, CorrelationProblem::Indefinite { value, eigenvalue });
             }
@@ -178,20 +184,6 @@ impl Correlation {
             (Some(a), Some(b)) => a.iter().zip(b).map(|(x, y)| x * y).sum(),
             (None, _) | (_, None) => 0.0,
         }
-    }
-
-    /// The same of some of the quantities only; the others are not correlated.
-    #[must_use]
-    pub fn among(&self, keep: impl Fn(usize) -> bool) -> Self {
-        let kept: Vec<usize> = self.members.iter().copied().filter(|m| keep(*m)).collect();
-        let pairs =
-            kept.iter().enumerate().flat_map(|(i, &a)| kept[..i].iter().map(move |&b| (a, b)));
-        let pairs: Vec<_> = pairs
-            .map(|(a, b)| (a, b, self.coefficient(a, b)))
-            .filter(|(_, _, coefficient)| *coefficient != 0.0)
-            .collect();
-        // Of correlations a part is correlations, too.
-        Self::new(&pairs).unwrap_or_default()
     }
 
     /// The logarithm of the density of the copula at correlated scores: that of the joint density over the product of

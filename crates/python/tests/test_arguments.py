@@ -73,6 +73,28 @@ def test_numbers_have_no_correlation(by_length: bool, pair: tuple[str, str], var
         made()
 
 
+@pytest.mark.parametrize("by_length", [True, False])
+@pytest.mark.parametrize("pair", [(one, other) for one in SCALARS for other in SCALARS if one < other])
+@pytest.mark.parametrize("still", [set(), {0}, {1}, {0, 1}])
+def test_laws_without_a_deviation_have_no_correlation(by_length: bool, pair: tuple[str, str], still: set[int]) -> None:
+    given: dict[str, Any] = dict(zip(SCALARS, [2.0, 0.1, 0.2, 0.3, 0.3, 0.25, 0.2]))
+    for place, name in enumerate(pair):
+        given[name] = gyradius.normal(given[name], 0.0 if place in still else 0.01)
+    mass, *others = given.values()
+    shape = {"gyration_lengths" if by_length else "roots": others[3:]}
+
+    def made(**keys: Any) -> gyradius.MassPropertiesLaw:
+        return gyradius.MassPropertiesLaw.joint(mass, others[:3], axes=gyradius.uniform_attitude(), **keys, **shape)
+
+    tied = {**made().form, "correlations": [[*pair, 0.5]]}
+    for way in (lambda: made(correlations=[(*pair, 0.5)]), lambda: gyradius.MassPropertiesLaw.of(tied)):
+        if not still:
+            assert way() == gyradius.MassPropertiesLaw.of(way().form) != made()
+            continue
+        with pytest.raises(ValueError, match=f"correlation of {pair[0]} and {pair[1]}: {pair[min(still)]} does not vary"):
+            way()
+
+
 @pytest.mark.parametrize("way", [tuple, iter, lambda pairs: (pair for pair in pairs), lambda pairs: [list(pair) for pair in pairs]])
 def test_correlations_may_be_whatever_gives_pairs(way: Callable[[list[Any]], Any]) -> None:
     pairs = [("mass", "shape1", 0.6), ("mass", "shape2", np.float32(0.25))]

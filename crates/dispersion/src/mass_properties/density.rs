@@ -46,7 +46,7 @@ impl MassPropertiesLaw {
 
     /// The score of a scalar if it is correlated with another.
     fn score(&self, scalar: usize, law: &ScalarLaw, x: f64) -> f64 {
-        if self.copula().has(scalar) { law.score(x) } else { 0.0 }
+        if self.correlation().has(scalar) { law.score(x) } else { 0.0 }
     }
 
     /// The density of the entries, and of the copula.
@@ -64,7 +64,7 @@ impl MassPropertiesLaw {
             }
             Of::Model(model) => {
                 let factor = self.shares().factor(mass);
-                let copula = self.copula().ln_copula(&scores)?;
+                let copula = self.correlation().ln_copula(&scores)?;
                 let unit = InertiaMatrix::new(inertia.matrix() / factor).ok()?;
                 let density = [model.ln_density(&unit)?, -6.0 * libm::log(factor), copula];
                 Some(ln_product_of_exps(&density))
@@ -81,8 +81,8 @@ impl MassPropertiesLaw {
         mut scores: [f64; JointScalar::ALL.len()],
     ) -> Option<f64> {
         axes.ln_density_of_attitude(&UnitQuaternion::identity())?;
-        let tied = (0..3).any(|i| self.copula().has(SHAPE + i));
-        let alone = if tied { 0.0 } else { self.copula().ln_copula(&scores)? };
+        let tied = (0..3).any(|i| self.correlation().has(SHAPE + i));
+        let alone = if tied { 0.0 } else { self.correlation().ln_copula(&scores)? };
         let mut known = true;
         let density = ln_density_of_bounded(
             body.inertia(),
@@ -151,7 +151,7 @@ impl MassPropertiesLaw {
                     scores[SHAPE + i] = self.score(SHAPE + i, law, x);
                 }
                 let [a, b, c] = parts;
-                *term = ln_product_of_exps(&[a, b, c, self.copula().ln_copula(scores)?]);
+                *term = ln_product_of_exps(&[a, b, c, self.correlation().ln_copula(scores)?]);
             }
             *sum = ln_sum(&terms);
         }

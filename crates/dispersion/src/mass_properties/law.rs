@@ -60,9 +60,6 @@ pub struct MassPropertiesLaw {
     tensor: TensorLaw,
     /// How the scalars are correlated.
     correlation: Correlation,
-    /// Among those that vary, of which there is a density.
-    #[getset(skip)]
-    copula: Correlation,
     /// As given, for files.
     #[getset(skip)]
     pairs: Vec<(JointScalar, JointScalar, f64)>,
@@ -123,9 +120,8 @@ impl MassPropertiesLaw {
     ) -> Result<Self, MassPropertiesLawError> {
         tensor.check()?;
         let mass = positive(mass)?;
-        let none = Correlation::default;
-        let (correlation, copula, pairs) = (none(), none(), Vec::new());
-        let law = Self { mass, centre, tensor, correlation, copula, pairs, inside: None };
+        let (correlation, pairs) = (Correlation::default(), Vec::new());
+        let law = Self { mass, centre, tensor, correlation, pairs, inside: None };
         law.check_reach()?;
         law.check_draws()?;
         Ok(law)
@@ -134,27 +130,29 @@ impl MassPropertiesLaw {
     /// The same with scalars that are correlated, by the coefficients of their normal scores.
     ///
     /// # Errors
-    /// The coefficients do not belong together, or one is of the shape and the inertia is drawn by a model that has no
-    /// three scalar laws.
+    /// The coefficients do not belong together, one is of a scalar that does not vary, or one is of the shape and the
+    /// inertia is drawn by a model that has no three scalar laws.
     pub fn with_correlation(
         self,
         pairs: &[(JointScalar, JointScalar, f64)],
     ) -> Result<Self, MassPropertiesLawError> {
-        let scalars = self.scalar_laws().count();
+        let laws: Vec<&ScalarLaw> = self.scalar_laws().collect();
         let at: Vec<(usize, usize, f64)> =
             pairs.iter().map(|&(a, b, value)| (a as usize, b as usize, value)).collect();
-        if let Some((a, b, _)) = pairs.iter().find(|(a, b, _)| (*a).max_index(*b) >= scalars) {
-            let scalar = if *a as usize >= scalars { *a } else { *b };
+        let mut members = pairs.iter().flat_map(|&(a, b, _)| [(a, [a, b]), (b, [a, b])]);
+        let law = |scalar: JointScalar| laws.get(scalar as usize);
+        if let Some((scalar, _)) = members.clone().find(|(scalar, _)| law(*scalar).is_none()) {
             return Err(MassPropertiesLawError::NoShape { scalar });
+        }
+        let is_still = |scalar| law(scalar).is_some_and(|law| !(law.deviation() > 0.0));
+        if let Some((scalar, scalars)) = members.find(|(scalar, _)| is_still(*scalar)) {
+            return Err(MassPropertiesLawError::Still { scalars, scalar });
         }
         let correlation = Correlation::new(&at).map_err(|error| {
             let (a, b, _) = pairs[error.pair];
             MassPropertiesLawError::Correlation { scalars: [a, b], problem: error.problem }
         })?;
-        let laws: Vec<&ScalarLaw> = self.scalar_laws().collect();
-        let copula =
-            correlation.among(|scalar| laws.get(scalar).is_some_and(|law| law.deviation() > 0.0));
-        let law = Self { correlation, copula, pairs: pairs.to_vec(), inside: None, ..self.clone() };
+        let law = Self { correlation, pairs: pairs.to_vec(), inside: None, ..self.clone() };
         match self.inside {
             Some(inside) => law.inside(inside.into_region()),
             None => Ok(law),
@@ -205,11 +203,6 @@ impl MassPropertiesLaw {
     /// Whether scalars are correlated.
     pub(super) fn is_correlated(&self) -> bool {
         !self.pairs.is_empty()
-    }
-
-    /// How the scalars that vary are correlated.
-    pub(super) fn copula(&self) -> &Correlation {
-        &self.copula
     }
 
     pub(super) fn shares(&self) -> Shares {
@@ -306,12 +299,6 @@ pub(super) struct Shares(Option<Follows>);
 impl Shares {
     pub(super) fn factor(self, mass: f64) -> f64 {
         self.0.map_or(1.0, |follows| follows.factor(mass))
-    }
-}
-
-impl JointScalar {
-    fn max_index(self, other: Self) -> usize {
-        (self as usize).max(other as usize)
     }
 }
 
@@ -433,6 +420,17 @@ pub enum MassPropertiesLawError {
         scalars: [JointScalar; 2],
         /// What is wrong with their coefficient.
         problem: CorrelationProblem,
+    },
+    /// A coefficient is of a scalar that does not vary, on which it would have no effect.
+    #[error(
+        "correlation of {} and {}: {scalar} does not vary, as its law has no deviation: give it one, or leave the pair away",
+        scalars[0], scalars[1]
+    )]
+    Still {
+        /// The two scalars.
+        scalars: [JointScalar; 2],
+        /// The one that does not vary.
+        scalar: JointScalar,
     },
     /// A coefficient is of the shape, and the inertia is drawn by a model.
     #[error(

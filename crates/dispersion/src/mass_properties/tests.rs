@@ -10,6 +10,9 @@ use rand_distr::Distribution;
 use super::*;
 use crate::{AxesLaw, FixedAttitude, ScalarLaw, Wishart};
 
+/// The kind that does not vary.
+const STILL: usize = 4;
+
 /// Scalar laws of many kinds with about this mean and deviation, the mean positive.
 pub(super) fn scalar(kind: usize, mean: f64, sigma: f64) -> ScalarLaw {
     let half = 3f64.sqrt() * sigma;
@@ -73,6 +76,7 @@ pub(super) fn any_law() -> impl Strategy<Value = MassPropertiesLaw> {
             1 => vec![0, count - 1],
             _ => vec![0, 2, count - 1],
         };
+        let picked: Vec<usize> = picked.into_iter().filter(|i| kinds[*i] != STILL).collect();
         let unit = |i: usize| Vector3::new(vectors[i][0], vectors[i][1], 0.7).normalize();
         let mut pairs = Vec::new();
         for (n, &a) in picked.iter().enumerate() {
@@ -389,5 +393,44 @@ fn a_hundred_million_draws_are_bodies_in_their_shape() {
             assert!(region.room(&body) > -1e-12, "{row:?}");
         }
         done += ROWS as u64;
+    }
+}
+
+proptest! {
+    /// Any scalars that vary or not, of lengths or roots: coefficients are taken of those that vary alone, and a law that has them
+    /// is written and read.
+    #[test]
+    fn what_does_not_vary_has_no_correlation(still in prop::array::uniform7(any::<bool>()), of_lengths: bool, c in -0.3..0.3_f64) {
+        let law = |scalar: JointScalar| {
+            let deviation = if still[scalar as usize] { 0.0 } else { 0.01 };
+            ScalarLaw::normal(1.0, deviation).unwrap()
+        };
+        use JointScalar::{Centre1, Centre2, Centre3, Mass, Shape1, Shape2, Shape3};
+        let sizes = [Shape1, Shape2, Shape3].map(law);
+        let uniform = gyradius_attitude::UniformAttitude;
+        let tensor = if of_lengths { TensorLaw::gyration_lengths(sizes, uniform) } else { TensorLaw::roots(sizes, uniform) };
+        let plain = MassPropertiesLaw::new(law(Mass), [Centre1, Centre2, Centre3].map(law), tensor).unwrap();
+        for a in JointScalar::ALL {
+            for b in JointScalar::ALL.into_iter().filter(|b| *b != a) {
+                for coefficient in [c, 0.0] {
+                    let tied = plain.clone().with_correlation(&[(a, b, coefficient)]);
+                    let first = [a, b].into_iter().find(|scalar| still[*scalar as usize]);
+                    match (first, tied) {
+                        (None, Ok(tied)) => {
+                            prop_assert_eq!(tied.correlation().coefficient(a as usize, b as usize), coefficient);
+                            #[cfg(feature = "serde")]
+                            {
+                                let text = serde_json::to_string(&tied).unwrap();
+                                prop_assert_eq!(serde_json::from_str::<MassPropertiesLaw>(&text).unwrap(), tied);
+                            }
+                        }
+                        (Some(scalar), Err(error)) => {
+                            prop_assert_eq!(error, MassPropertiesLawError::Still { scalars: [a, b], scalar });
+                        }
+                        (expected, found) => prop_assert!(false, "{expected:?}: {found:?}"),
+                    }
+                }
+            }
+        }
     }
 }

@@ -350,7 +350,7 @@ impl Joint {
             for j in 0..i {
                 let size = deviation(i) * deviation(j);
                 let coefficient = if size > 0.0 { self.spread[(i, j)] / size * MOST } else { 0.0 };
-                let varies = self.mean[i] != 0.0 || i < 4;
+                let varies = [i, j].into_iter().all(|i| self.mean[i] != 0.0 || i < 4);
                 if varies && coefficient.abs() > STILL {
                     pairs.push((
                         JointScalar::ALL[i],

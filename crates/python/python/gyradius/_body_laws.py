@@ -68,7 +68,7 @@ class MassPropertiesLaw(LawOfBodies):
             the inertia alone.
         correlations : sequence of (str, str, float)
             Between ``"mass"``, ``"centre1"`` to ``"centre3"`` and ``"shape1"`` to ``"shape3"`` (lengths or roots), each of which must
-            have a law and not be a number.
+            vary: a number, or a law without a deviation, has no correlation.
         inside : Region
             Where the matter must be possible: draws that are not are drawn again.
 

@@ -116,7 +116,8 @@ impl List {
             let each = self.each(&field, given.drawn)?;
             let law = ScalarLaw::bernoulli(given.probability)
                 .map_err(|e| ScenarioError::field(given.key(&field), e))?;
-            self.push([&format!("{name}_{chance}"); 2], "", 0.0, (law, each), target);
+            let name = format!("{name}_{chance}");
+            self.push([&name, &name, &field], "", 0.0, (law, each), target);
             Ok(())
         };
         if let (Some(_), Some(start)) = (d.late_probability, d.start) {

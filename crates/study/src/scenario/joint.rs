@@ -26,14 +26,15 @@ pub(crate) struct Joint<T> {
 pub(crate) struct Number<'a> {
     pub(crate) column: &'a str,
     pub(crate) part_of: &'a str,
+    pub(crate) given: &'a str,
     pub(crate) law: &'a ScalarLaw,
     pub(crate) each: Each,
 }
 
 impl<T> Dispersed<T> {
     pub(super) fn number(&self) -> Number<'_> {
-        let Self { column, part_of, law, each, .. } = self;
-        Number { column, part_of, law, each: *each }
+        let Self { column, part_of, given, law, each, .. } = self;
+        Number { column, part_of, given, law, each: *each }
     }
 }
 
@@ -44,6 +45,8 @@ pub(crate) struct Dispersed<T = Target> {
     pub(crate) column: String,
     /// What it is part of, in words: its parameter, without the component.
     pub(crate) part_of: String,
+    /// Where its law stands in the file.
+    pub(crate) given: String,
     pub(crate) nominal: f64,
     pub(crate) law: ScalarLaw,
     /// For what it is drawn.

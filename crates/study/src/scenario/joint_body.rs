@@ -142,8 +142,13 @@ impl JointBody {
 
 /// The key of the region of a body at a place of the file.
 pub(crate) fn region_key(place: &str, body: &UncertainBody) -> String {
+    format!("{}.{INSIDE}", part(place, body))
+}
+
+/// Where the laws of the body at a place of the file stand.
+pub(crate) fn part(place: &str, body: &UncertainBody) -> String {
     let of = if body.given_law().is_some() { "law" } else { "dispersion" };
-    format!("{place}.{of}.{INSIDE}")
+    format!("{place}.{of}")
 }
 
 /// All pairs.

@@ -8,7 +8,7 @@ use super::{
     each::{DRAWN, Each},
     file::CorrelationFile,
     joint::{Dispersed, Joint, Number, Target},
-    joint_body::{JointBody, Quantity, region_key},
+    joint_body::{JointBody, Quantity, part, region_key},
     law::{self, GivenLaw, VectorLawFile},
     load::{self, Uncertain},
     scalar::ScalarLawFile,
@@ -55,30 +55,31 @@ impl<T> List<T> {
         Self { fleet, all, pairs, fields, bodies: Vec::new() }
     }
 
-    /// A number that a user gave a name.
+    /// A number that a user gave a name, and the place of its law.
     pub(crate) fn named(
         &mut self,
         name: &str,
+        given: String,
         nominal: f64,
         (law, each): (ScalarLaw, Each),
         target: T,
     ) {
         let [column, part_of] = [name; 2].map(str::to_owned);
-        self.all.push(Dispersed { column, part_of, nominal, law, each, target });
+        self.all.push(Dispersed { column, part_of, given, nominal, law, each, target });
     }
 
-    /// A number with a name that ends in its unit, if it has one, and the parameter that it is part of.
+    /// A number with a name that ends in its unit, if it has one, the parameter that it is part of, and the place of its law.
     pub(crate) fn push(
         &mut self,
-        [name, parameter]: [&str; 2],
+        [name, parameter, given]: [&str; 3],
         unit: &str,
         nominal: f64,
         (law, each): (ScalarLaw, Each),
         target: T,
     ) {
         let column = if unit.is_empty() { name.to_owned() } else { format!("{name}_{unit}") };
-        let part_of = in_words(parameter);
-        self.all.push(Dispersed { column, part_of, nominal, law, each, target });
+        let (part_of, given) = (in_words(parameter), given.to_owned());
+        self.all.push(Dispersed { column, part_of, given, nominal, law, each, target });
     }
 
     /// A parameter of what stands at a place of the file, and is called by a name.
@@ -137,7 +138,7 @@ impl<T> List<T> {
         let each = self.each(field, law.drawn)?;
         let law = law::about(&law.form, field, nominal, unit)?;
         positive(field, nominal, &law)?;
-        self.push([&place.name; 2], place.unit, nominal, (law, each), target);
+        self.push([&place.name, &place.name, field], place.unit, nominal, (law, each), target);
         Ok(())
     }
 
@@ -155,7 +156,8 @@ impl<T> List<T> {
             let name = format!("{}_{}", place.name, i + 1);
             let (each, field) = law.drawn(&place.field, i);
             let each = self.each(&field, each)?;
-            self.push([&name, &place.name], place.unit, *nominal, (scalar, each), target(i));
+            let names = [name.as_str(), &place.name, &field];
+            self.push(names, place.unit, *nominal, (scalar, each), target(i));
         }
         for (a, b, coefficient) in vector.pairs {
             self.pairs.push((first + a, first + b, coefficient));
@@ -176,11 +178,12 @@ impl<T> List<T> {
     ) -> Result<(), ScenarioError> {
         let Some(laws) = laws else { return self.parameter(place, name, uncertain, target) };
         let Uncertain { name: quantity, unit, nominal, law: _ } = uncertain;
-        let parameter = format!("{name}_{quantity}");
+        let (parameter, given) = (format!("{name}_{quantity}"), format!("{place}.law"));
         for (i, (law, nominal)) in laws.iter().zip(nominal).enumerate() {
             let component = format!("{parameter}_{}", i + 1);
             let name = if laws.len() > 1 { &component } else { &parameter };
-            self.push([name, &parameter], unit, *nominal, (law.clone(), each), target(i));
+            let names = [name.as_str(), &parameter, &given];
+            self.push(names, unit, *nominal, (law.clone(), each), target(i));
         }
         Ok(())
     }
@@ -222,6 +225,7 @@ impl<T> List<T> {
             let root = |(i, law): (usize, &ScalarLaw)| Dispersed {
                 column: format!("{parameter}_{}_{unit}", i + 1),
                 part_of: in_words(&parameter),
+                given: part(place, body),
                 nominal: law.mean(),
                 law: law.clone(),
                 each,
@@ -272,6 +276,13 @@ impl<T> List<T> {
             let members = given.between.iter().map(index).collect::<Result<Vec<_>, _>>()?;
             if members.len() < 2 {
                 let problem = format!("{:?}: it must name at least two quantities", given.between);
+                return Err(ScenarioError::field(format!("{field}.between"), problem));
+            }
+            if let Some(still) = members.iter().find(|i| !(numbers[**i].law.deviation() > 0.0)) {
+                let Number { column, given, .. } = numbers[*still];
+                let problem = format!(
+                    "{column:?} does not vary: {given} has a deviation (sigma) of zero; give it another, or leave the name away here"
+                );
                 return Err(ScenarioError::field(format!("{field}.between"), problem));
             }
             for (j, &b) in members.iter().enumerate() {

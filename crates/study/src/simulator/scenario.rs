@@ -95,7 +95,7 @@ impl SimulatorScenario {
             let nominal = law.mean();
             let (unit, meaning) = (quantity.unit.clone(), quantity.meaning.clone());
             let column = Column::number(quantity.name.clone(), unit, meaning);
-            list.named(&quantity.name, nominal, (law, each), count + i);
+            list.named(&quantity.name, format!("{field}.law"), nominal, (law, each), count + i);
             quantities.push(Number { column, nominal });
         }
         let dispersed = list.correlate(

@@ -101,7 +101,10 @@ fn whole_laws_are_drawn_as_they_are() {
             (JointScalar::Shape1, JointScalar::Shape3, 0.5),
         ];
         let pairs = &pairs[..if case % 4 == 3 { 1 } else { 3 }];
-        let law = if pick(3) > 0 { law.with_correlation(pairs).unwrap() } else { law };
+        // What does not vary has no correlation.
+        let tied = |law: &MassPropertiesLaw, pair| law.clone().with_correlation(&[pair]).is_ok();
+        let pairs: Vec<_> = pairs.iter().copied().filter(|pair| tied(&law, *pair)).collect();
+        let law = if pick(3) > 0 { law.with_correlation(&pairs).unwrap() } else { law };
         let scenario = with_law(&law, "");
         let again = Scenario::from_toml(&scenario.to_toml()).unwrap();
         assert_eq!(again.to_toml(), scenario.to_toml());
