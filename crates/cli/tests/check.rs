@@ -292,6 +292,33 @@ fn the_tolerance_decides_about_rounded_plates() {
     assert!(out.contains("1e-4 %"), "{out}");
 }
 
+/// Tolerances above and below what the computation rounds by: all that is written says the one that decides.
+#[test]
+fn the_tolerance_that_is_told_is_the_one_that_decides() {
+    let shell = Shell::new();
+    let least = 64.0 * f64::EPSILON;
+    for exponent in -17..=-2 {
+        for (given, outside) in
+            [(10_f64.powi(exponent), 0.9), (10_f64.powi(exponent), 1.1), (0.0, 0.9), (0.0, 1.1)]
+        {
+            let told = given.max(least);
+            // min K = −outside · told · tr(I), in a body of which doubles hold the moments exactly.
+            let moment = |x: f64| format!("{x:?}");
+            let far = 4.0 * outside * told;
+            shell.write(
+                "r.urdf",
+                robot(&[link("plate", "1", [&moment(0.5 - far), "0.5", "1"], NONE)]),
+            );
+            let tolerance = moment(given);
+            let arguments = ["r.urdf", "--tolerance", &tolerance];
+            let (code, out, _) = shell.check(&arguments);
+            assert_eq!(code, i32::from(outside > 1.0), "{given} {outside}: {out}");
+            assert!(out.contains(&format!("(tolerance {told:?})")), "{out}");
+            assert_eq!(shell.json(&arguments).1["tolerance"], told);
+        }
+    }
+}
+
 #[test]
 fn folders_are_walked_in_order_and_files_read_once() {
     let shell = Shell::new();

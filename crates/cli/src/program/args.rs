@@ -6,6 +6,7 @@ use clap::{
     value_parser,
 };
 use gyradius_estimation::TenForm;
+use gyradius_inertia::RELATIVE_TOLERANCE;
 use gyradius_study::{
     CompareOptions, Event, Inside, ModelKind, RareMethod, RareOptions, Requirement, Rows,
     StoppingRule, TableFormat,
@@ -533,7 +534,8 @@ pub(crate) struct CheckArgs {
     pub(crate) force: bool,
 
     /// How far outside the possible an inertia may lie, relative to its trace. Files carry about
-    /// six digits, and a flat plate written with six digits lies on the boundary to within that
+    /// six digits, and a flat plate written with six digits lies on the boundary to within that. Less than 1.4e-14, also 0, is taken
+    /// as 1.4e-14: the computation itself rounds by as much
     #[arg(long, value_name = "REL", allow_negative_numbers = true, default_value_t = gyradius_formats::TOLERANCE, value_parser = tolerance)]
     pub(crate) tolerance: f64,
 
@@ -881,9 +883,10 @@ fn probability(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "it must be a number between 1e-9 and 1, such as 1e-6".to_owned())
 }
 
+/// As it is applied, so that all that is written says so.
 fn tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(value) if (0.0..=0.1).contains(&value) => Ok(value),
+        Ok(value) if (0.0..=0.1).contains(&value) => Ok(value.max(RELATIVE_TOLERANCE)),
         _ => Err("it must lie between 0 and 0.1".to_owned()),
     }
 }
