@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 use std::{
+    collections::BTreeSet,
     fs::{self, File},
     process::{Command, Output, Stdio},
     thread,
@@ -341,7 +342,8 @@ fn a_run_without_a_temporary_folder_is_no_failed_run() {
         .unwrap();
     let study = ["study", "--scenario", "s.toml", "--out", "it"];
     let rare = ["rare", "y >= 2", "--scenario", "s.toml"];
-    for words in [&study[..], &rare] {
+    let replay = ["replay", "s.toml", "--run", "0"];
+    for words in [&study[..], &rare, &replay] {
         let output = scratch.command(words).env("TMPDIR", "/nonexistent").output().unwrap();
         let [_, err] = said(&output);
         let told = "a temporary folder for a run cannot be used in /nonexistent: No such file";
@@ -350,4 +352,43 @@ fn a_run_without_a_temporary_folder_is_no_failed_run() {
     assert!(!scratch.path("it/report.html").exists());
     let output = scratch.run(&study);
     assert!(output.status.success(), "{:?}", said(&output));
+}
+
+/// Where the machine can start no more processes, no run is to blame, on any number of threads and with any number of open files: either
+/// the study ends as it would have ended, or it keeps nothing that failed and the same command goes on.
+#[test]
+fn a_process_that_cannot_be_started_is_no_failed_run() {
+    let scratch = Scratch::new();
+    let script = SCRIPT.replace("x=${line", "sleep 0.002; x=${line");
+    fs::write(scratch.path("answer.sh"), script).unwrap();
+    let scenario = SCENARIO.replace("runs = 4000", "runs = 300");
+    fs::write(scratch.path("lines.toml"), &scenario).unwrap();
+    let once = "read -r line < input.json; echo '{\"outputs\":{\"y\":1}}' > output.json";
+    let per_run = format!("per_run = true\ncommand = [\"sh\", \"-c\", '''{once}''']");
+    let per_run = scenario.replace("command = [\"sh\", \"answer.sh\"]", &per_run);
+    fs::write(scratch.path("files.toml"), per_run).unwrap();
+    let mut ends = BTreeSet::new();
+    for scenario in ["lines.toml", "files.toml"] {
+        scratch.done(&["study", "--scenario", scenario, "--out", "free", "--force"], 0);
+        for (files, threads) in [(14, "1"), (20, "2"), (26, "8"), (34, "8"), (44, "8"), (1024, "8")]
+        {
+            let words = ["study", "--scenario", scenario, "--threads", threads, "--out", "it"];
+            let mut limited = Command::new("sh");
+            let limit = format!("ulimit -n {files}; exec \"$0\" \"$@\"");
+            limited.args(["-c", &limit, env!("CARGO_BIN_EXE_gyradius")]).args(words);
+            let output = limited.current_dir(scratch.folder()).output().unwrap();
+            let (code, told) = (output.status.code(), said(&output));
+            assert!(matches!(code, Some(0 | 2)), "{scenario} {files} {threads}: {told:?}");
+            let is_told = told[1].contains("cannot be started: Too many open files");
+            ends.insert((scenario, code, is_told));
+            // What has failed is not kept, so that nothing is to be retried.
+            scratch.done(&words, 0);
+            assert!(content(&scratch.path("it")) == content(&scratch.path("free")), "{words:?}");
+            fs::remove_dir_all(scratch.path("it")).unwrap();
+        }
+    }
+    for scenario in ["lines.toml", "files.toml"] {
+        assert!(ends.contains(&(scenario, Some(0), false)), "{ends:?}");
+        assert!(ends.contains(&(scenario, Some(2), true)), "{ends:?}");
+    }
 }

@@ -1,5 +1,6 @@
 //! The processes of a program that simulates, of which each thread that does runs has one.
 
+use rustix::io::Errno;
 use std::{
     fmt, fs,
     io::{self, ErrorKind, Read},
@@ -34,8 +35,8 @@ pub(super) struct Processes {
     unasked: Mutex<Option<Unasked>>,
     /// The files that the command names, as they were when they were first looked at.
     files: OnceLock<Vec<NamedFile>>,
-    /// Why the temporary folder of a run could not be used, if one could not.
-    no_folder: OnceLock<String>,
+    /// What this machine could not do for a run, if there was something: start a process, or use a temporary folder.
+    of_machine: OnceLock<String>,
 }
 
 /// What processes of a simulator wrote to standard output that nobody had asked for. Each was ended for it before its next run,
@@ -80,7 +81,7 @@ impl Processes {
             idle: Mutex::default(),
             unasked: Mutex::default(),
             files: OnceLock::new(),
-            no_folder: OnceLock::new(),
+            of_machine: OnceLock::new(),
         }
     }
 
@@ -89,10 +90,10 @@ impl Processes {
         self.files.get_or_init(|| self.program.named_files().collect())
     }
 
-    /// Why runs that were done since then do not count: a file of the command has changed, or there is no temporary folder, of which no
-    /// run is to blame.
+    /// Why runs that were done since then do not count: a file of the command has changed, or the machine could not start a process or use a
+    /// temporary folder, for which no run is to blame.
     pub(super) fn fault(&self) -> Option<String> {
-        if let Some(problem) = self.no_folder.get() {
+        if let Some(problem) = self.of_machine.get() {
             return Some(problem.clone());
         }
         let changed = self.files().iter().find(|file| !file.is_as_it_was())?;
@@ -147,6 +148,10 @@ impl Processes {
         kept: &mut Option<Child>,
         read: impl Fn(&[u8]) -> Result<T, Trouble>,
     ) -> Result<T, Trouble> {
+        // The runs that are done now are dropped, and each may take an hour.
+        if self.of_machine.get().is_some() {
+            return Err(Trouble::Stopped);
+        }
         if self.program.is_per_run() {
             let answer = self.ask_with_files(request)?;
             return read(&answer).map_err(Trouble::in_a_file);
@@ -172,7 +177,8 @@ impl Processes {
                 self.note(child.unasked());
             }
         }
-        let result = ask(Child::start(&self.program).map_err(Trouble::Start)?, kept);
+        let child = Child::start(&self.program).map_err(|error| self.not_started(error))?;
+        let result = ask(child, kept);
         // Asked alone, it answers: that was no answer to this run.
         if let (Some(text), true) = (beside, kept.is_some()) {
             self.note(&text);
@@ -192,15 +198,39 @@ impl Processes {
         self.unasked.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
+    /// Notes that a process cannot be started: the command is the same for every run, so that no run is to blame for it.
+    fn not_started(&self, error: io::Error) -> Trouble {
+        self.of_machine.get_or_init(|| {
+            let scarce = [Errno::MFILE, Errno::NFILE, Errno::AGAIN, Errno::NOMEM];
+            let is_scarce = Errno::from_io_error(&error).is_some_and(|own| scarce.contains(&own));
+            let remedy = if is_scarce {
+                " (each thread has a process of its own, which needs open files and memory: --threads asks for fewer)"
+            } else {
+                ""
+            };
+            format!("the command `{}` cannot be started: {error}{remedy}", self.program.shown())
+        });
+        Trouble::Start(error)
+    }
+
     /// Notes that the temporary folder of a run cannot be used.
     fn no_folder(&self, error: io::Error) -> Trouble {
         let place = std::env::temp_dir();
         // Without the name of the folder, which is another one each time.
         let error = error.raw_os_error().map_or(error, io::Error::from_raw_os_error);
-        self.no_folder.get_or_init(|| {
+        self.of_machine.get_or_init(|| {
             format!("a temporary folder for a run cannot be used in {}: {error}", place.display())
         });
         Trouble::Files(error)
+    }
+
+    /// That the file with the answer cannot be read: what the simulator left may be gone or forbidden, and everything else is for the machine
+    /// to answer.
+    fn unreadable(&self, error: io::Error) -> Trouble {
+        match error.kind() {
+            ErrorKind::NotFound | ErrorKind::PermissionDenied => Trouble::Files(error),
+            _ => self.no_folder(error),
+        }
     }
 
     /// Starts a process for one run, which reads and writes files.
@@ -209,9 +239,27 @@ impl Processes {
         let folder = folder.map_err(|error| self.no_folder(error))?;
         let input = fs::write(folder.path().join("input.json"), request);
         input.map_err(|error| self.no_folder(error))?;
-        let mut child = Child::start_in(&self.program, folder.path()).map_err(Trouble::Start)?;
-        child.finish(self.program.patience())?;
-        left(&folder.path().join("output.json"))
+        let child = Child::start_in(&self.program, folder.path());
+        child.map_err(|error| self.not_started(error))?.finish(self.program.patience())?;
+        self.left(&folder.path().join("output.json"))
+    }
+
+    /// The file that a process left.
+    fn left(&self, file: &Path) -> Result<Vec<u8>, Trouble> {
+        match fs::symlink_metadata(file) {
+            Ok(found) if found.is_file() => {}
+            // A pipe would be waited for.
+            Ok(found) => return Err(Trouble::NotAFile { what: what(found.file_type()) }),
+            Err(e) if e.kind() == ErrorKind::NotFound => return Err(Trouble::NoFile),
+            Err(e) => return Err(self.unreadable(e)),
+        }
+        let read = || {
+            let mut answer = Vec::new();
+            fs::File::open(file)?.take(LIMIT as u64 + 1).read_to_end(&mut answer)?;
+            Ok(answer)
+        };
+        let answer = read().map_err(|error| self.unreadable(error))?;
+        if answer.len() > LIMIT { Err(Trouble::TooLong { limit: LIMIT }) } else { Ok(answer) }
     }
 }
 
@@ -224,21 +272,6 @@ impl Drop for Processes {
             child.ends_by(deadline);
         }
     }
-}
-
-/// The file that a process left.
-fn left(file: &Path) -> Result<Vec<u8>, Trouble> {
-    match fs::symlink_metadata(file) {
-        Ok(found) if found.is_file() => {}
-        // A pipe would be waited for.
-        Ok(found) => return Err(Trouble::NotAFile { what: what(found.file_type()) }),
-        Err(e) if e.kind() == ErrorKind::NotFound => return Err(Trouble::NoFile),
-        Err(e) => return Err(Trouble::Files(e)),
-    }
-    let mut answer = Vec::new();
-    let file = fs::File::open(file).map_err(Trouble::Files)?;
-    file.take(LIMIT as u64 + 1).read_to_end(&mut answer).map_err(Trouble::Files)?;
-    if answer.len() > LIMIT { Err(Trouble::TooLong { limit: LIMIT }) } else { Ok(answer) }
 }
 
 /// What is no regular file.

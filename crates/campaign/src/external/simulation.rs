@@ -81,7 +81,8 @@ pub trait Inputs: Sync {
 /// that did not answer as agreed is killed with everything in its process group. If it had done runs before, the run is
 /// sent once more, to a process that is started for it alone, and what that does counts. So a run depends on its inputs
 /// alone, as long as the simulator itself keeps nothing from one run to the next, and a process that spoils itself spoils
-/// no other run.
+/// no other run. If the system cannot start a process or use a temporary folder, no run is to blame, and that is the
+/// [`fault`](Simulation::fault) that ends the campaign.
 /// ```
 /// use gyradius_campaign::{
 ///     Column, ExternalSimulation, Failure, Inputs, Program, Simulator, Streams, run, threads,

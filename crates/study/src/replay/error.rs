@@ -56,6 +56,12 @@ pub enum ReplayError {
     /// The coast cannot be followed to its end.
     #[error("the run ends well, but not its coast: {0}; ask for a shorter one")]
     Coasting(RunError),
+    /// The simulator could not do the run, though the run is not to blame.
+    #[error("{problem}; nothing is known of the run")]
+    Fault {
+        /// What is wrong.
+        problem: String,
+    },
     /// It was told to stop before the run had ended.
     #[error("stopped")]
     Stopped,

@@ -1,6 +1,6 @@
 //! One run of a simulator again: what was sent, what was answered.
 
-use gyradius_campaign::{Table, Told, is_stopped};
+use gyradius_campaign::{Simulation, Table, Told, is_stopped};
 use std::{
     fmt,
     path::Path,
@@ -69,6 +69,9 @@ impl SimulatorReplay {
         let told = simulation.replay(run);
         if is_stopped(stop.map(|stop| &**stop)) {
             return Err(ReplayError::Stopped);
+        }
+        if let Some(problem) = simulation.fault() {
+            return Err(ReplayError::Fault { problem });
         }
         let own = simulation.table(run, &told)?;
         let outputs = scenario.outputs().iter();
