@@ -11,57 +11,109 @@ use super::{tail::shown, trouble::Trouble};
 use crate::column::Column;
 
 /// What a simulator may answer.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Default)]
 struct Answer<'a> {
     run: Option<u64>,
-    #[serde(borrow)]
-    outputs: Option<Outputs<'a>>,
-    #[serde(borrow)]
-    error: Option<Cow<'a, str>>,
+    outputs: Option<Object<'a>>,
+    error: Option<Name<'a>>,
 }
 
-/// Outputs by name, as written and in the order in which they are written.
-struct Outputs<'a>(Vec<(Cow<'a, str>, &'a RawValue)>);
+/// The values of an object by name, as written and in the order in which they are written.
+struct Object<'a>(Vec<(Name<'a>, &'a RawValue)>);
 
 /// The numbers of the declared outputs, in their order, in the answer to a run.
 pub(super) fn read(answer: &[u8], run: u64, outputs: &[Column]) -> Result<Vec<f64>, Trouble> {
-    // Serde would take a list for the fields in their order.
+    let not_json = |problem| Trouble::NotJson { problem, line: answer.to_vec() };
     if answer.trim_ascii_start().starts_with(b"[") {
-        let problem = "it is a list".to_owned();
-        return Err(Trouble::NotJson { problem, line: answer.to_vec() });
+        return Err(not_json("it is a list".to_owned()));
     }
     if let Some(problem) = byte_order_mark(answer) {
-        return Err(Trouble::NotJson { problem, line: answer.to_vec() });
+        return Err(not_json(problem));
     }
     let with_words_in_json;
-    let parsed: Answer<'_> = match serde_json::from_slice(answer) {
-        Ok(parsed) => parsed,
+    let (object, has_words): (Object<'_>, _) = match serde_json::from_slice(answer) {
+        Ok(object) => (object, false),
         Err(error) => {
-            let problem = error.to_string();
-            let not_json = || Trouble::NotJson { problem, line: answer.to_vec() };
-            let (first, text) = with_words(answer).ok_or_else(not_json)?;
+            let (first, text) = with_words(answer).ok_or_else(|| not_json(error.to_string()))?;
             with_words_in_json = text;
-            let (output, value) = (None, first);
-            serde_json::from_slice(&with_words_in_json).map_err(|_| Trouble::NotFinite {
-                output,
-                value,
-                infinite: Vec::new(),
-            })?
+            let not_finite = |_| Trouble::NotFinite { output: None, value: first };
+            (serde_json::from_slice(&with_words_in_json).map_err(not_finite)?, true)
         }
     };
-    if let Some(answered) = parsed.run.filter(|answered| *answered != run) {
+    let (found, wrong) = Answer::of(object, has_words, not_json);
+    if let Some(answered) = found.run.filter(|answered| *answered != run) {
         return Err(Trouble::OutOfTurn { answered, line: answer.to_vec() });
     }
-    let found = match (parsed.outputs, parsed.error) {
-        (Some(found), None) => found.0,
-        (None, Some(text)) => return Err(Trouble::Error { text: text.into_owned() }),
-        (Some(_), Some(_)) | (None, None) => return Err(Trouble::OutputsOrError),
+    let numbers = found.outputs.map(|found| {
+        declared(found.0, outputs, number, |value| {
+            let value = word(value).unwrap_or(value.get());
+            shown(value.as_bytes(), 40)
+        })
+    });
+    let (trouble, numbers) = match (wrong, numbers, found.error) {
+        (None, Some(numbers), None) => return numbers,
+        (None, None, Some(Name(text))) => {
+            return Err(Trouble::Error { text: text.into_owned() });
+        }
+        (None, numbers, _) => (Trouble::OutputsOrError, numbers),
+        (Some(wrong), numbers, _) => (wrong, numbers),
     };
-    declared(found, outputs, number, |value| {
-        let word = value.get().trim_matches('"');
-        shown(if in_json(word).is_some() { word } else { value.get() }.as_bytes(), 40)
-    })
+    let infinite = numbers.and_then(Result::err).map(|other| other.infinite().to_vec());
+    Err(trouble.beside(infinite.unwrap_or_default()))
+}
+
+impl<'a> Answer<'a> {
+    /// What an object has of it, and the first thing in the object that is not as agreed.
+    fn of(
+        object: Object<'a>,
+        has_words: bool,
+        not_json: impl Fn(String) -> Trouble,
+    ) -> (Self, Option<Trouble>) {
+        let (mut answer, mut wrong, mut seen) = (Self::default(), None, Vec::new());
+        for (Name(key), value) in object.0 {
+            let mut must = None;
+            match &*key {
+                "run" => match serde_json::from_str(value.get()) {
+                    Ok(run) => answer.run = run,
+                    Err(_) => must = Some("a whole number that is not negative"),
+                },
+                "outputs" => match serde_json::from_str::<Option<Object<'_>>>(value.get()) {
+                    // Where there are several, none of them is lost.
+                    Ok(Some(more)) => {
+                        answer.outputs.get_or_insert(Object(Vec::new())).0.extend(more.0);
+                    }
+                    Ok(None) => {}
+                    Err(_) => must = Some("an object of outputs by name"),
+                },
+                "error" => match serde_json::from_str(value.get()) {
+                    Ok(error) => answer.error = error,
+                    Err(_) => must = Some("a text"),
+                },
+                other => {
+                    let other = shown(other.as_bytes(), 40);
+                    let problem = format!(
+                        "it has the key `{other}`, and `run`, `outputs` and `error` are all that it may have"
+                    );
+                    wrong.get_or_insert_with(|| not_json(problem));
+                    continue;
+                }
+            }
+            if let Some(must) = must {
+                let problem = || not_json(format!("its `{key}` must be {must}"));
+                let word = word(&value).filter(|_| has_words).map(str::to_owned);
+                wrong.get_or_insert_with(|| match word {
+                    Some(value) => Trouble::NotFinite { output: None, value },
+                    None => problem(),
+                });
+            }
+            if seen.contains(&key) {
+                let problem = format!("it has the key `{key}` more than once");
+                wrong.get_or_insert_with(|| not_json(problem));
+            }
+            seen.push(key);
+        }
+        (answer, wrong)
+    }
 }
 
 /// What is wrong with an answer that begins with a byte order mark, which nobody sees: JSON begins with none (RFC 8259, section 8.1).
@@ -87,37 +139,49 @@ fn number(value: &&RawValue) -> f64 {
     number.unwrap_or(f64::NAN)
 }
 
+/// The word that stands in the place of a number, if it is one that programs write for a number that is not finite.
+fn word<'a>(value: &&'a RawValue) -> Option<&'a str> {
+    let word = value.get().trim_matches('"');
+    in_json(word).map(|_| word)
+}
+
 /// The numbers of the declared outputs, in their order, among what was answered by name; what is no number is NaN, and told as it
-/// is shown.
+/// is shown. Whatever else is wrong, those that are infinite are told.
 pub(super) fn declared<N: AsRef<str>, V>(
     answered: impl IntoIterator<Item = (N, V)>,
     outputs: &[Column],
     number: impl Fn(&V) -> f64,
     shown: impl Fn(&V) -> String,
 ) -> Result<Vec<f64>, Trouble> {
-    let (mut numbers, mut not_finite) = (vec![None; outputs.len()], None);
+    let mut numbers = vec![None; outputs.len()];
+    let (mut wrong, mut not_finite) = (None, None);
     for (place, (name, value)) in answered.into_iter().enumerate() {
         let name = name.as_ref();
         // Most simulators write them in the order in which they are declared.
         let here = outputs.get(place).filter(|column| column.name() == name);
-        let place = here
-            .map(|_| place)
-            .or_else(|| outputs.iter().position(|column| column.name() == name))
-            .ok_or_else(|| Trouble::Unknown { output: name.to_owned() })?;
-        if numbers[place].is_some() {
-            return Err(Trouble::Repeated { output: name.to_owned() });
-        }
+        let place =
+            here.map(|_| place).or_else(|| outputs.iter().position(|column| column.name() == name));
+        let Some(place) = place else {
+            wrong.get_or_insert_with(|| Trouble::Unknown { output: name.to_owned() });
+            continue;
+        };
         let number = number(&value);
-        numbers[place] = Some(number);
-        if not_finite.is_none() && !number.is_finite() {
-            let told = if number.is_nan() { shown(&value) } else { number.to_string() };
-            not_finite = Some((name.to_owned(), told));
+        if numbers[place].is_some() {
+            wrong.get_or_insert_with(|| Trouble::Repeated { output: name.to_owned() });
+        }
+        if numbers[place].is_none_or(|other: f64| !other.is_infinite()) {
+            numbers[place] = Some(number);
+        }
+        if !number.is_finite() {
+            not_finite.get_or_insert_with(|| {
+                let value = if number.is_nan() { shown(&value) } else { number.to_string() };
+                Trouble::NotFinite { output: Some(name.to_owned()), value }
+            });
         }
     }
-    if let Some((output, value)) = not_finite {
+    if let Some(trouble) = wrong.or(not_finite) {
         let infinite = |number: Option<f64>| number.filter(|x| x.is_infinite());
-        let infinite = numbers.into_iter().map(infinite).collect();
-        return Err(Trouble::NotFinite { output: Some(output), value, infinite });
+        return Err(trouble.beside(numbers.into_iter().map(infinite).collect()));
     }
     let named = outputs.iter().zip(numbers);
     let number = |(column, number): (&Column, Option<f64>)| {
@@ -183,23 +247,23 @@ fn length_of_text(bytes: &[u8]) -> usize {
     bytes.len()
 }
 
-impl<'de: 'a, 'a> Deserialize<'de> for Outputs<'a> {
+impl<'de: 'a, 'a> Deserialize<'de> for Object<'a> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Pairs;
 
         impl<'de> Visitor<'de> for Pairs {
-            type Value = Outputs<'de>;
+            type Value = Object<'de>;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("an object of outputs by name")
+                f.write_str("an object")
             }
 
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
                 let mut pairs = Vec::new();
-                while let Some((name, value)) = map.next_entry::<Name<'de>, &'de RawValue>()? {
-                    pairs.push((name.0, value));
+                while let Some(pair) = map.next_entry()? {
+                    pairs.push(pair);
                 }
-                Ok(Outputs(pairs))
+                Ok(Object(pairs))
             }
         }
 
@@ -207,9 +271,15 @@ impl<'de: 'a, 'a> Deserialize<'de> for Outputs<'a> {
     }
 }
 
-/// A name that is borrowed where it can be.
+/// A text that is borrowed where it can be.
 #[derive(Deserialize)]
 struct Name<'a>(#[serde(borrow)] Cow<'a, str>);
+
+impl AsRef<str> for Name<'_> {
+    fn as_ref(&self) -> &str {
+        &self.0
+    }
+}
 
 #[cfg(test)]
 mod tests {
@@ -248,6 +318,24 @@ mod tests {
         ("\"true\"", None, "\"true\""),
     ];
 
+    /// What may be wrong among the outputs, and what is told of it.
+    const OUTPUTS: [(&str, &str); 3] = [
+        ("\"steps\": 3", "an output `steps`, which is not declared"),
+        ("\"inf\": Infinity", "an output `inf`, which is not declared"),
+        ("\"a\": -Infinity", ""),
+    ];
+
+    /// What may be wrong beside the outputs, and what is told of it.
+    const BESIDE: [(&str, &str); 7] = [
+        ("\"elapsed\": 1", "it has the key `elapsed`, and `run`, `outputs` and `error` are"),
+        ("\"worst\": NaN", "it has the key `worst`, and"),
+        ("\"error\": \"both\"", "either `outputs` or `error`"),
+        ("\"error\": 7", "its `error` must be a text"),
+        ("\"run\": \"three\"", "its `run` must be a whole number"),
+        ("\"run\": -1", "its `run` must be a whole number"),
+        ("\"outputs\": 1", "its `outputs` must be an object"),
+    ];
+
     proptest! {
         /// Whatever stands in the places of numbers, in whatever order: all numbers if they are finite, and otherwise the first that is
         /// not, by its name, with those that are infinite.
@@ -268,14 +356,59 @@ mod tests {
             let is_finite = |x: &Option<f64>| x.is_some_and(f64::is_finite);
             match read(answer.as_bytes(), 3, &columns) {
                 Ok(numbers) => prop_assert_eq!(numbers.into_iter().map(Some).collect::<Vec<_>>(), expected, "{}", answer),
-                Err(Trouble::NotFinite { output, value, infinite }) => {
+                Err(trouble) => {
+                    let infinite = trouble.infinite().to_vec();
+                    let Trouble::NotFinite { output, value } = trouble.alone() else { panic!("{answer}") };
                     let first = values.iter().position(|(_, number, _)| !is_finite(number)).unwrap();
                     prop_assert_eq!(output.as_deref(), Some(answered[first]), "{}", answer);
                     prop_assert_eq!(value, values[first].2, "{}", answer);
                     let of = expected.map(|number| number.filter(|x| x.is_infinite()));
-                    prop_assert_eq!(infinite, of, "{}", answer);
+                    let of = of.iter().any(Option::is_some).then_some(of);
+                    prop_assert_eq!(infinite, of.into_iter().flatten().collect::<Vec<_>>(), "{}", answer);
                 }
-                Err(other) => panic!("{answer}: {other:?}"),
+            }
+        }
+
+        /// Whatever is wrong with an answer beside, in any number and order: the outputs that are declared and infinite stay, unless the
+        /// answer is that of another run, and something that is wrong is told.
+        #[test]
+        fn infinite_outputs_stay_whatever_is_wrong(
+            values in prop::collection::vec(prop::sample::select(VALUES.to_vec()), 3),
+            there in prop::collection::vec(prop::bool::weighted(0.9), 3),
+            (in_outputs, beside) in (prop::sample::subsequence(OUTPUTS.to_vec(), 0..=2), prop::sample::subsequence(BESIDE.to_vec(), 0..=3)),
+            order: bool,
+        ) {
+            let names = ["a", "b", "c"];
+            let columns = names.map(|name| Column::number(name, "1", "A number."));
+            let pairs = names.iter().zip(&values).zip(&there).filter(|(_, there)| **there);
+            let mut pairs: Vec<String> = pairs.map(|((name, (text, ..)), _)| format!("\"{name}\":{text}")).collect();
+            pairs.extend(in_outputs.iter().map(|(text, _)| (*text).to_owned()));
+            let mut fields = vec![format!("\"outputs\":{{{}}}", pairs.join(","))];
+            fields.extend(beside.iter().map(|(text, _)| (*text).to_owned()));
+            if order {
+                fields.reverse();
+            }
+            let answer = format!("{{{}}}", fields.join(","));
+            let of = |place: usize| values[place].1.filter(|x| x.is_infinite() && there[place]);
+            // One that stands twice is the first that is infinite.
+            let again = in_outputs.iter().any(|(text, _)| text.starts_with("\"a\"")).then_some(f64::NEG_INFINITY);
+            let infinite = [of(0).or(again), of(1), of(2)];
+            let all = (0..3).all(|place| there[place]);
+            let finite = (0..3).all(|place| values[place].1.is_some_and(f64::is_finite));
+            match read(answer.as_bytes(), 3, &columns) {
+                Ok(_) => prop_assert!(in_outputs.is_empty() && beside.is_empty() && all && finite, "{}", answer),
+                Err(trouble) => {
+                    let of = infinite.iter().any(Option::is_some).then_some(infinite);
+                    prop_assert_eq!(trouble.infinite().to_vec(), of.into_iter().flatten().collect::<Vec<_>>(), "{}", answer);
+                    let told = trouble.failure().message().to_owned();
+                    // What is wrong with the object comes before what is wrong with its outputs.
+                    let mut reasons: Vec<&str> = beside.iter().map(|(_, told)| *told).collect();
+                    if reasons.is_empty() {
+                        reasons = in_outputs.iter().map(|(_, told)| *told).collect();
+                    }
+                    let is_told = reasons.iter().any(|reason| told.contains(reason));
+                    prop_assert!(is_told || reasons.is_empty() && (told.contains("is not a finite number") || !all), "{answer}: {told}");
+                }
             }
         }
 
@@ -317,10 +450,10 @@ mod tests {
             r#"{"outputs": {"y": [NaN}}"#,
         ] {
             let told = read(answer.as_bytes(), 3, &columns).unwrap_err();
-            let Trouble::NotFinite { output: None, value, infinite } = told else {
+            let Trouble::NotFinite { output: None, value } = told else {
                 panic!("{answer}: {told:?}")
             };
-            assert!(value == "NaN" && infinite.is_empty(), "{answer}");
+            assert!(value == "NaN", "{answer}");
         }
     }
 }

@@ -47,15 +47,16 @@ pub(super) enum Trouble {
     Repeated { output: String },
     /// An output is in the answer that is not declared.
     Unknown { output: String },
-    /// An output is not a finite number. With it those of the declared outputs, in their order, that are infinite: nothing may leave
-    /// such a run out.
-    NotFinite { output: Option<String>, value: String, infinite: Vec<Option<f64>> },
+    /// An output is not a finite number.
+    NotFinite { output: Option<String>, value: String },
     /// The answer has both outputs and an error, or neither.
     OutputsOrError,
     /// The simulator says that the run failed.
     Error { text: String },
     /// The simulator, a function, panicked.
     Panicked { text: Option<String> },
+    /// Any of these, in an answer in which declared outputs are infinite: those of them, in their order. Nothing may leave such a run out.
+    Beside { infinite: Vec<Option<f64>>, trouble: Box<Self> },
 }
 
 impl Trouble {
@@ -84,12 +85,21 @@ impl Trouble {
             | Self::NotAFile { .. }
             | Self::NotJson { .. }
             | Self::NotJsonFile { .. } => false,
+            Self::Beside { trouble, .. } => trouble.is_an_answer(),
+        }
+    }
+
+    /// The same, in an answer with these of the declared outputs, in their order, that are infinite, as far as there are any.
+    pub(super) fn beside(self, infinite: Vec<Option<f64>>) -> Self {
+        match infinite.iter().any(Option::is_some) {
+            true => Self::Beside { infinite, trouble: Box::new(self) },
+            false => self,
         }
     }
 
     /// The declared outputs, in their order, that the run has although it failed: those that are infinite. Empty if it has none at all.
     pub(super) fn infinite(&self) -> &[Option<f64>] {
-        let Self::NotFinite { infinite, .. } = self else { return &[] };
+        let Self::Beside { infinite, .. } = self else { return &[] };
         infinite
     }
 
@@ -97,17 +107,26 @@ impl Trouble {
     pub(super) fn into_unasked(self) -> Option<Vec<u8>> {
         let (Self::Early { text: written }
         | Self::NotJson { line: written, .. }
-        | Self::OutOfTurn { line: written, .. }) = self
+        | Self::OutOfTurn { line: written, .. }) = self.alone()
         else {
             return None;
         };
         Some(written)
     }
 
+    /// The same, without what is infinite beside it.
+    pub(super) fn alone(self) -> Self {
+        match self {
+            Self::Beside { trouble, .. } => *trouble,
+            other => other,
+        }
+    }
+
     /// The same, of an answer that stands in a file.
     pub(super) fn in_a_file(self) -> Self {
         match self {
             Self::NotJson { problem, line } => Self::NotJsonFile { problem, content: line },
+            Self::Beside { infinite, trouble } => trouble.in_a_file().beside(infinite),
             other => other,
         }
     }
@@ -206,7 +225,7 @@ impl Trouble {
                     shown(output.as_bytes(), 80)
                 ),
             ),
-            Self::NotFinite { output, value, .. } => {
+            Self::NotFinite { output, value } => {
                 let of = output
                     .map_or("an output".to_owned(), |output| format!("the output `{output}`"));
                 (
@@ -218,6 +237,7 @@ impl Trouble {
                 "neither outputs nor an error",
                 "the answer must have either `outputs` or `error`".to_owned(),
             ),
+            Self::Beside { trouble, .. } => return trouble.failure(),
             Self::Panicked { text } => {
                 let text = text.map(|text| format!(": {}", shown(text.as_bytes(), TOLD)));
                 let panicked = "the simulator panicked";
