@@ -10,7 +10,7 @@ pub struct Ended {
     /// The rule, and how many runs there might have been.
     #[serde(flatten)]
     pub until: Until,
-    /// How many there are of each model.
+    /// How many there are of each model; if they were interrupted, how many first runs are there of every model.
     pub runs: u64,
     /// How often they were looked at, from the first look that counts.
     looks: u64,
@@ -28,9 +28,17 @@ impl Ended {
         self.is_interrupted
     }
 
-    /// After so many runs, after which they were interrupted.
-    pub(crate) fn not_yet(until: &Until, runs: u64) -> Self {
-        Self { is_interrupted: true, ..Self::new(until, runs, false) }
+    /// Interrupted before anything ended them.
+    pub(crate) fn not_yet(until: &Until) -> Self {
+        Self { is_interrupted: true, ..Self::new(until, 0, false) }
+    }
+
+    /// The same, if they were interrupted: when the first runs of every model up to so many were there.
+    pub(crate) fn with_first_runs(self, runs: u64) -> Self {
+        match self.is_interrupted {
+            true => Self { is_interrupted: true, ..Self::new(&self.until, runs, false) },
+            false => self,
+        }
     }
 
     /// After so many runs, which were enough or not.
@@ -67,7 +75,8 @@ impl fmt::Display for Ended {
         if *is_interrupted {
             write!(
                 f,
-                "The runs were interrupted: so far there are {runs} of each model, and with the rule “{rule}” there may be up to {most}."
+                "The runs were interrupted: so far there are {runs} of every model, counted up to the first that is missing, and with the rule \
+                 “{rule}” there may be up to {most}."
             )
         } else if *enough {
             write!(

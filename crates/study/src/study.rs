@@ -102,6 +102,9 @@ pub(crate) fn do_what_is_left<C: Subject>(
     let blocks = folder.blocks(begun, scenario.runs(), options.force, &threads)?;
     let plan = plan(scenario, options, doing);
     let left = to_be_done(&simulations, plan, (&folder, &blocks), say)?;
+    let missing = gaps(&blocks, scenario);
+    let first_missing = missing.iter().map(|missing| missing.range().start).min();
+    let ended = ended.map(|ended| ended.with_first_runs(first_missing.unwrap_or(scenario.runs())));
     // What a rule ended was held against its runs, and retried, before the rule was asked.
     let is_interrupted = ended.as_ref().is_some_and(Ended::is_interrupted);
     let is_ended = ended.is_some() && !is_interrupted;
@@ -321,12 +324,12 @@ pub(crate) fn put_together<C: Subject>(
     let Some(until) = scenario.until() else {
         return do_what_is_left(scenario, &options, (Doing::Nothing, None), &|_| {}, say);
     };
-    // Of runs that a rule is to end, those that are there are all that there are to be so far.
+    // Of runs that a rule is to end, the last one that is there is the last that there is to be so far, of whole vehicles.
     let blocks = told(folder, &contents(scenario), &identity(scenario))?;
     let end = blocks.iter().map(|block| block.range().end).max().unwrap_or(scenario.runs());
     let end = end.next_multiple_of(scenario.fleet().map_or(1, Fleet::flights));
     let end = end.min(until.most_runs());
-    let so_far = Ended::not_yet(until, end);
+    let so_far = Ended::not_yet(until);
     let scenario = scenario.ended_after(end, until.first_look())?;
     do_what_is_left(&scenario, &options, (Doing::Nothing, Some(so_far)), &|_| {}, say)
 }

@@ -4,6 +4,7 @@ mod again;
 mod failing;
 mod fleets;
 mod function;
+mod interrupted;
 mod joint;
 mod kept;
 mod models;

@@ -1,0 +1,96 @@
+//! Studies that were interrupted: what is told of them.
+
+use gyradius_campaign::{RunInputs, SimulatorFunction};
+use proptest::prelude::*;
+use std::{
+    fs,
+    path::Path,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
+};
+
+use super::{
+    BODY, MODELS, SimulatorScenario, files, folder,
+    function::{COMMAND, FUNCTION, answer},
+    scenario, uniform,
+};
+use crate::{CampaignError, Options, Status, StudyError, put_together};
+
+/// Flights of a vehicle, where there are vehicles.
+const FLIGHTS: u64 = 5;
+
+/// A scenario of so many runs that waits for a function, of one model or of two, with vehicles or without.
+fn waiting(
+    folder: &Path,
+    models: bool,
+    vehicles: bool,
+    runs: u64,
+    more: &str,
+) -> SimulatorScenario {
+    let mut text = uniform().replace(COMMAND, FUNCTION);
+    if models {
+        text += "\n[[bodies]]\nname = \"hub\"";
+        text += &(BODY.replace("DISPERSION", "mass_percent = 1.0") + MODELS);
+    }
+    let size = match vehicles {
+        true => format!("vehicles = {}\nflights = {FLIGHTS}", runs / FLIGHTS),
+        false => format!("runs = {runs}"),
+    };
+    scenario(&(text.replace("runs = 300", &size) + more), folder)
+}
+
+/// Does runs on one thread until so many were begun, and is stopped then.
+fn interrupt(waiting: &SimulatorScenario, out: &Path, after: u64) {
+    let (stop, calls) = (Arc::new(AtomicBool::new(false)), AtomicU64::new(0));
+    let own = Arc::clone(&stop);
+    let function = SimulatorFunction::new(move |run: &RunInputs<'_>| {
+        own.fetch_or(calls.fetch_add(1, Ordering::Relaxed) + 1 >= after, Ordering::Relaxed);
+        answer().run(run)
+    });
+    let options = Options { stop: Some(stop), threads: Some(1), ..Options::to(out.to_owned()) };
+    let scenario = waiting.clone().with_function(function).unwrap();
+    let stopped = scenario.study(&options, &|_| {}, &|_| {}).unwrap_err();
+    assert!(matches!(stopped, StudyError::Campaign(CampaignError::Stopped)), "{stopped}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Interrupted anywhere, of one model or two, with vehicles or without: a report of runs that a rule is to end says how many runs are there
+    /// of every model, and counts the looks at these.
+    #[test]
+    fn a_report_meanwhile_counts_what_is_there(
+        models: bool,
+        vehicles: bool,
+        after in 1_u64..2500,
+        look_every in prop::sample::select(vec![50_u64, 255, 520]),
+    ) {
+        let folder = folder();
+        let out = folder.path().join("out");
+        let until = format!("\n[until]\nrule = \"mean(y) within 0.00001\"\nlook_every = {}\n", look_every / FLIGHTS * FLIGHTS);
+        let waiting = waiting(folder.path(), models, vehicles, 3000, &until);
+        interrupt(&waiting, &out, after);
+        let Ok(status) = Status::read(&out) else {
+            // No block was finished, and nothing is left.
+            prop_assert!(!out.exists());
+            return Ok(());
+        };
+        let first_missing = status.missing.iter().map(|missing| missing.range().start).min().unwrap();
+        let put = put_together(&out, &Options::default(), &|_| {});
+        if status.models.iter().any(|model| model.finished == 0) {
+            prop_assert!(matches!(put, Err(StudyError::Absent { .. })), "{put:?}");
+        } else {
+            put.unwrap();
+            let summary = fs::read_to_string(out.join("summary.json")).unwrap();
+            let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+            let looks = waiting.until().unwrap().looks().filter(|look| *look <= first_missing).count();
+            let ended = &summary["ended"];
+            prop_assert_eq!((&ended["runs"], &ended["looks"]), (&first_missing.into(), &looks.into()));
+            let page = fs::read_to_string(out.join("report.md")).unwrap();
+            let told = format!("so far there are {first_missing} of every model");
+            prop_assert!(page.contains(&told), "{}", page);
+        }
+    }
+}
