@@ -12,22 +12,23 @@ const SHARED: [&str; 3] = ["rows", "columns", "requirements"];
 pub(crate) fn contents<C: Subject>(scenario: &C) -> Contents<'_> {
     let tables = scenario.model_names().map(|model| format!("runs/{model}/"));
     let others = ["scenario.toml", "summary.json", "runs/", MANIFEST].map(str::to_owned);
-    let extends = |text: &str| {
-        // Fewer runs would take some away.
+    // Fewer runs than a complete study has would take some away; the blocks of one that is not complete tell for themselves.
+    let extends = |text: &str, complete: Option<u64>| {
         C::resolved(text).is_ok_and(|there| {
-            there.runs() <= scenario.runs()
+            complete.unwrap_or(there.runs()) <= scenario.runs()
                 && identity(scenario).difference(&identity(&there)).is_none()
         })
     };
-    let differs = |text: &str| {
+    let differs = |text: &str, complete: Option<u64>| {
         let there = C::resolved(text).ok()?;
         let difference = identity(scenario).difference(&identity(&there));
+        let runs = complete.unwrap_or(there.runs());
         let fewer = || match (there.fleet(), scenario.fleet()) {
             (Some(there), Some(here)) => {
-                format!("vehicles is {} there and {} here", there.vehicles(), here.vehicles())
+                format!("vehicles is {} there and {} here", runs / there.flights(), here.vehicles())
             }
             (Some(_) | None, _) => {
-                format!("runs is {} there and {} here", there.runs(), scenario.runs())
+                format!("runs is {runs} there and {} here", scenario.runs())
             }
         };
         Some(difference.map_or_else(fewer, |difference| difference.to_string()))

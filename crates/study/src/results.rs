@@ -200,8 +200,8 @@ pub(crate) fn write<C: Subject>(
     let (page, pages) = (report.html(), Document::pages(report::NAME));
     let certain = results.scenario.report_files();
     let contents = match out {
-        Some(_) => Contents::new("report", "report.html", certain, |text| text == page),
-        None => Contents::new("study", "summary.json", certain, |_| true)
+        Some(_) => Contents::new("report", "report.html", certain, |text, _| text == page),
+        None => Contents::new("study", "summary.json", certain, |_, _| true)
             .keeping(|name| !name.starts_with("figures/") && !pages.iter().any(|p| p == name)),
     };
     let mut folder = Folder::prepare(out.unwrap_or(&results.folder), &contents, force)?;

@@ -50,8 +50,10 @@ use refusal::Refusal;
 pub use shared::Shared;
 pub use told::{begun, changed, missing_runs, replacing, told, told_runs, why_unknown};
 
-/// Says in what a text differs from another.
-type Telling<'a> = Box<dyn Fn(&str) -> Option<String> + 'a>;
+/// Whether a text of the mark is that of the very same.
+type Same<'a> = Box<dyn Fn(&str, Option<u64>) -> bool + 'a>;
+/// Says in what a text of the mark differs from another.
+type Telling<'a> = Box<dyn Fn(&str, Option<u64>) -> Option<String> + 'a>;
 
 /// What goes into a folder.
 pub struct Contents<'a> {
@@ -62,7 +64,7 @@ pub struct Contents<'a> {
     /// Files that are certain to be written, and folders, which end in `/`.
     certain: Vec<String>,
     /// Whether this text of the mark is that of the very same.
-    same: Box<dyn Fn(&str) -> bool + 'a>,
+    same: Same<'a>,
     /// Which files that were written before stay as they are.
     kept: Box<dyn Fn(&str) -> bool + 'a>,
     /// In what another text of the mark differs.
@@ -73,12 +75,14 @@ pub struct Contents<'a> {
 
 impl<'a> Contents<'a> {
     /// `certain` are files that will be written, and folders, which end in `/`, so that what is in their way is found before the work
-    /// begins; `same` tells whether a text of the file `mark` is that of what will be written.
+    /// begins; `same` tells whether a text of the file `mark` is that of what will be written. Both this and [`telling`](Self::telling) are told
+    /// how many runs a model the complete campaign in the folder has, 0 if there is none, as far as that is known: a report of one that is not
+    /// complete writes the mark, too.
     pub fn new(
         what: &'static str,
         mark: &'static str,
         certain: impl IntoIterator<Item = String>,
-        same: impl Fn(&str) -> bool + 'a,
+        same: impl Fn(&str, Option<u64>) -> bool + 'a,
     ) -> Self {
         let certain = certain.into_iter().collect();
         Self {
@@ -87,13 +91,13 @@ impl<'a> Contents<'a> {
             certain,
             same: Box::new(same),
             kept: Box::new(|_| false),
-            differs: Box::new(|_| None),
+            differs: Box::new(|_, _| None),
             trusted: |_| false,
         }
     }
 
     /// Tells in what another text of the mark differs, for the message that refuses it.
-    pub fn telling(self, differs: impl Fn(&str) -> Option<String> + 'a) -> Self {
+    pub fn telling(self, differs: impl Fn(&str, Option<u64>) -> Option<String> + 'a) -> Self {
         Self { differs: Box::new(differs), ..self }
     }
 
@@ -361,10 +365,11 @@ fn check(
     };
     let known = in_the_way.is_ok() && record.has(&mark);
     let text = || fs::read_to_string(mark.below(place));
-    let same = known && text().is_ok_and(|text| (contents.same)(&text));
+    let runs = complete_runs(place, record)?;
+    let same = known && text().is_ok_and(|text| (contents.same)(&text, runs));
     // Of a campaign that is not complete, the mark is not there yet; other files may stand beside it.
     let begun = if known { None } else { told::text_of_begun(place)? };
-    let goes_on = begun.as_deref().is_some_and(|text| (contents.same)(text));
+    let goes_on = begun.as_deref().is_some_and(|text| (contents.same)(text, runs));
     if occupied && !same && !goes_on && !force {
         if let Err(changed @ Problem::Changed { .. }) = in_the_way {
             return Err(changed);
@@ -373,7 +378,7 @@ fn check(
         if !mark.below(place).exists() && difference.is_none() && record.has(&mark) {
             return Err(Problem::Gone { name: mark, what: contents.what });
         }
-        let difference = difference.and_then(|text| (contents.differs)(&text));
+        let difference = difference.and_then(|text| (contents.differs)(&text, runs));
         return Err(match difference {
             Some(difference) => Problem::Other { what: contents.what, difference },
             None => Problem::Occupied { what: contents.what },
@@ -381,6 +386,15 @@ fn check(
     }
     let checked = record.names().filter(|name| !(same && (contents.trusted)(&name.to_string())));
     unobstructed(place, record, files.iter().chain(checked))
+}
+
+/// How many runs a model the complete campaign has that a record tells of, 0 if it tells of none; nothing if that cannot be read.
+fn complete_runs(place: &Path, record: &Record) -> Result<Option<u64>, Problem> {
+    if !record.has(&Name::new(MANIFEST)?) {
+        return Ok(Some(0));
+    }
+    let blocks = Manifest::read(place).map(Manifest::into_blocks);
+    Ok(blocks.ok().map(|blocks| blocks.map(|block| block.range().end).max().unwrap_or(0)))
 }
 
 /// That nothing is in the way of these files but what the record knows.

@@ -80,7 +80,7 @@ fn study(which: usize) -> Files {
 
 fn contents(which: usize) -> Contents<'static> {
     let certain = ["mark.txt", "figures/"].map(str::to_owned);
-    Contents::new("study", "mark.txt", certain, move |text| text == study(which)["mark.txt"])
+    Contents::new("study", "mark.txt", certain, move |text, _| text == study(which)["mark.txt"])
 }
 
 fn publish(place: &Path, which: usize, force: bool) -> Result<(), FolderError> {

@@ -123,7 +123,7 @@ impl ModelComparison {
         let certain = ["compare.csv", "compare.json", "figures/"].map(str::to_owned);
         let figures = figures_of_models::names().into_iter().map(|name| file_of(&name));
         let certain = certain.into_iter().chain(Document::pages(page::NAME)).chain(figures);
-        let contents = Contents::new("comparison", "compare.json", certain, |text: &str| {
+        let contents = Contents::new("comparison", "compare.json", certain, |text: &str, _| {
             serde_json::from_str::<serde_json::Value>(text)
                 .is_ok_and(|found| found.get("settings") == Some(&wanted))
         });

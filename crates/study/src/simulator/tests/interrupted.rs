@@ -1,4 +1,4 @@
-//! Studies that were interrupted: what is told of them.
+//! Studies that were interrupted: what is told of them, and that a report of them changes nothing of what may follow.
 
 use gyradius_campaign::{RunInputs, SimulatorFunction};
 use proptest::prelude::*;
@@ -92,5 +92,37 @@ proptest! {
             let told = format!("so far there are {first_missing} of every model");
             prop_assert!(page.contains(&told), "{}", page);
         }
+    }
+
+    /// Whether a report was made of an interrupted study or not, in an empty folder or beside a complete study: the same numbers of runs go
+    /// on, with the same results, and the others are refused for the same reason.
+    #[test]
+    fn a_report_meanwhile_changes_nothing_of_what_may_follow(
+        complete in prop::option::of(Just(300_u64)),
+        vehicles: bool,
+        after in 1_u64..1000,
+        runs in prop::sample::select(vec![200_u64, 300, 400, 520, 900, 3000]),
+    ) {
+        let folder = folder();
+        let given = |runs: u64| {
+            waiting(folder.path(), false, vehicles, runs, "").with_function(answer()).unwrap()
+        };
+        let out = folder.path().join("out");
+        let follow = |report: bool| {
+            let options = Options { threads: Some(1), ..Options::to(out.clone()) };
+            if let Some(complete) = complete {
+                given(complete).study(&options, &|_| {}, &|_| {}).unwrap();
+            }
+            interrupt(&waiting(folder.path(), false, vehicles, 3000, ""), &out, after);
+            if report {
+                // There may be no block yet.
+                let _ = put_together(&out, &options, &|_| {});
+            }
+            let followed = given(runs).study(&options, &|_| {}, &|_| {});
+            let told = followed.map(|_| files(&out.join("runs"))).map_err(|error| error.to_string());
+            fs::remove_dir_all(&out).unwrap();
+            told
+        };
+        prop_assert_eq!(follow(false), follow(true));
     }
 }
