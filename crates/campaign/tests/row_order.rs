@@ -1,4 +1,4 @@
-//! The order of the rows of a table that says which run each is, of which nothing depends.
+//! The order of the rows of a table that says which run each is, of which nothing depends, and that of runs of the same value.
 
 use gyradius_campaign::{Bound, ForeignTable, Judgement, Measured, Requirement};
 use proptest::prelude::*;
@@ -47,5 +47,31 @@ proptest! {
             prop_assert_eq!((first.counted(), first.failures()), (runs, failures));
         }
         prop_assert_eq!(other, in_order);
+    }
+}
+
+/// −0 and 0 are equal: of runs of both, the worst are the first, whatever is required, and whichever run has which.
+#[test]
+fn zeros_of_both_signs_are_equal() {
+    for bound in [
+        "x <= 0",
+        "x >= 0",
+        "0 <= x <= 0",
+        "x <= -1",
+        "x >= 1",
+        "-2 <= x <= -1",
+        "x <= 3",
+        "x >= -0",
+    ] {
+        let requirement: Requirement = format!("{bound} in 90 % at 90 %").parse().unwrap();
+        for signs in 0..1 << 6 {
+            let zero = |run: usize| if signs >> run & 1 == 0 { "0" } else { "-0" };
+            let text: Vec<&str> = (0..6).map(zero).collect();
+            let csv = format!("x\n{}\n", text.join("\n"));
+            let table = ForeignTable::read_csv("it".as_ref(), csv.as_bytes()).unwrap();
+            let judged = Judgement::of_table(std::slice::from_ref(&requirement), &table).unwrap();
+            let worst: Vec<u64> = judged[0].worst().iter().map(|run| run.run).collect();
+            assert_eq!(worst, (0..6).collect::<Vec<_>>(), "{bound}: {text:?}");
+        }
     }
 }

@@ -278,14 +278,15 @@ impl Tally {
 /// The worse run first, of equal ones the one of the smaller number, and of runs of several models that share one the one of the smaller value. Beside
 /// a limit that is very large, the excess rounds to the same in runs of different values.
 fn worse(bound: Bound, a: &RunBeyond, b: &RunBeyond) -> Ordering {
+    // −0 is as large as 0, and not before it.
+    let order = |a: f64, b: f64| (a + 0.0).total_cmp(&(b + 0.0));
     let rounded_away = match bound {
-        Bound::AtMost(_) => b.value.total_cmp(&a.value),
-        Bound::AtLeast(_) => a.value.total_cmp(&b.value),
+        Bound::AtMost(_) => order(b.value, a.value),
+        Bound::AtLeast(_) => order(a.value, b.value),
         // The same excess is that of a number at either limit.
         Bound::Between(..) => Ordering::Equal,
     };
-    b.excess
-        .total_cmp(&a.excess)
+    order(b.excess, a.excess)
         .then(rounded_away)
         .then(a.run.cmp(&b.run))
         .then(a.value.total_cmp(&b.value))
