@@ -25,7 +25,8 @@ pub(crate) struct UntilFile {
 const FIELD: &str = "until";
 
 impl UntilFile {
-    /// That of a scenario, with another rule, or looked at after another number of runs, if these are said.
+    /// That of a scenario, with another rule, or looked at after another number of runs, if these are said. The first look stays that of the
+    /// rule that it was filled in for.
     pub(crate) fn again(
         own: Option<&Self>,
         rule: Option<StoppingRule>,
@@ -36,12 +37,8 @@ impl UntilFile {
             ScenarioError::field("look_every", alone)
         })?;
         let look_every = look_every.or_else(|| own?.look_every);
-        Ok(Self {
-            rule,
-            first_look: None,
-            look_every,
-            most_runs: own.and_then(|own| own.most_runs),
-        })
+        let first_look = own.filter(|own| own.rule == rule).and_then(|own| own.first_look);
+        Ok(Self { rule, first_look, look_every, most_runs: own.and_then(|own| own.most_runs) })
     }
 
     /// The runs of a scenario that says how many there may be, and not how many there are.
@@ -110,12 +107,17 @@ mod tests {
         let rest: Vec<&str> = peck.lines().filter(|line| !line.starts_with("runs =")).collect();
         const OWN: &str = "mean(nutation_deg) within 1";
         let most = [("runs = 60", Some(200)), ("", Some(200)), ("runs = 60", None)];
-        for ((own, most), looks) in most.into_iter().flat_map(|m| [(m, None), (m, Some(20))]) {
+        let looks =
+            [None, Some(20)].into_iter().flat_map(|every| [(every, None), (every, Some(50))]);
+        for ((own, most), (looks, first_look)) in
+            most.into_iter().flat_map(|most| looks.clone().map(move |looks| (most, looks)))
+        {
             let line = |key, number: Option<u64>| {
                 number.map_or(String::new(), |number| format!("{key} = {number}\n"))
             };
             let [most_runs, looked] = [line("most_runs", most), line("look_every", looks)];
-            let until = format!("[until]\nrule = \"{OWN}\"\n{most_runs}{looked}");
+            let first = line("first_look", first_look);
+            let until = format!("[until]\nrule = \"{OWN}\"\n{most_runs}{looked}{first}");
             let text = format!("{own}\n{}\n{until}", rest.join("\n"));
             for look_every in [None, Some(40)] {
                 for rule in [None, Some(OWN), Some("mean(cone_deg) within 2")] {
@@ -129,7 +131,11 @@ mod tests {
                         assert_eq!(until.rule().to_string(), rule.unwrap_or(OWN), "{text}");
                         let first = until.looks().next();
                         let every = look_every.or(looks).unwrap_or(1000);
-                        assert_eq!(first, Some(every.min(until.most_runs())), "{text}");
+                        // That of another rule is not this one's.
+                        let said = first_look.filter(|_| rule.is_none_or(|rule| rule == OWN));
+                        assert_eq!(until.first_look(), said, "{text}");
+                        let expected = said.unwrap_or(every).min(until.most_runs());
+                        assert_eq!(first, Some(expected), "{text}");
                     }
                     // A number of runs that is said is the greatest.
                     let fewer = scenario.with_runs(90).unwrap();
