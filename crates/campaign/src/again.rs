@@ -5,6 +5,7 @@ use std::sync::{Mutex, PoisonError, atomic::AtomicBool};
 
 use crate::{
     cell::Cell,
+    column::Column,
     folder::{Blocks, FinishedRuns},
     simulation::{CampaignError, Simulation, go_on, run_range},
     table::Table,
@@ -69,7 +70,7 @@ pub struct Changed {
 
 /// Does the first finished run again that did not fail, and says what of it is another now, bit by bit: nothing if all is the
 /// same, or if there is no such run. Of what was not all kept, what was kept of it is compared, and of a run that failed if no other was
-/// kept. It is written nowhere.
+/// kept: of its reason the kind, for its words may hold what is another each time, such as an address in memory. It is written nowhere.
 ///
 /// # Errors
 /// A file cannot be read; the simulation writes rows that do not fit its columns.
@@ -86,8 +87,15 @@ pub fn run_changed<S: Simulation>(
     let new = run_range(simulation, &empty, run..run.saturating_add(1), &|_| Ok(()))?;
     let Some(again) = new.rows().next() else { return Ok(None) };
     let now = |column: &str| again.cell(column).unwrap_or(Cell::Null);
+    let kind = Column::status_kind();
+    let is_of_the_kind =
+        |(column, there): &(String, Cell<'_>)| column == kind.name() && *there == now(kind.name());
+    let is_same_kind = there.cells.iter().any(is_of_the_kind);
+    let [_, _, status] = Column::first();
+    let counts = |column: &str| !is_same_kind || column != status.name();
     let mut cells = there.cells.into_iter().map(|(column, there)| (now(&column), column, there));
-    Ok(cells.find(|(now, _, there)| there != now).map(|(now, column, there)| Changed {
+    let other = cells.find(|(now, column, there)| counts(column) && there != now);
+    Ok(other.map(|(now, column, there)| Changed {
         model: (*name).to_owned(),
         run,
         column,

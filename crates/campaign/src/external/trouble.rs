@@ -258,7 +258,8 @@ impl Trouble {
     }
 }
 
-/// A text with `#` for every number in it, so that texts that differ in numbers alone are counted together.
+/// A text with `#` for every number in it, so that texts that differ in numbers alone are counted together; an address in memory, such as
+/// `0x7f3a`, is one.
 fn without_numbers(text: &str) -> String {
     let mut kind = String::with_capacity(text.len());
     let mut rest = text;
@@ -269,6 +270,11 @@ fn without_numbers(text: &str) -> String {
         kind.push_str(if own { head } else { &rest[..start] });
         kind.push('#');
         rest = &rest[start..];
+        let hex = rest.strip_prefix("0x").or_else(|| rest.strip_prefix("0X"));
+        if let Some(hex) = hex.filter(|hex| hex.starts_with(|c: char| c.is_ascii_hexdigit())) {
+            rest = hex.trim_start_matches(|c: char| c.is_ascii_hexdigit());
+            continue;
+        }
         let digits =
             |text: &str| text.len() - text.trim_start_matches(|c: char| c.is_ascii_digit()).len();
         rest = &rest[digits(rest)..];
@@ -308,6 +314,17 @@ mod tests {
             prop_assert!(!kind.contains(|c: char| c.is_ascii_digit()));
             prop_assert_eq!(&kind, &text(|pair| pair.1, false));
             prop_assert_eq!(&kind, &text(|pair| pair.1, true));
+        }
+
+        /// Addresses in memory are numbers, wherever they stand and however they are written.
+        #[test]
+        fn kinds_have_no_addresses(words in prop::collection::vec("[g-wyz <>]{0,6}", 2..5), all in prop::array::uniform2(any::<u64>())) {
+            let text = |written: fn(u64) -> String, address: u64| without_numbers(&words.join(&written(address)));
+            let kind = words.join("#");
+            for address in all {
+                prop_assert_eq!(text(|x| format!("{x:#x}"), address), kind.as_str());
+                prop_assert_eq!(text(|x| format!("0X{x:016X}"), address), kind.as_str());
+            }
         }
 
         #[test]

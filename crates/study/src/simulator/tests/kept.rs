@@ -89,6 +89,8 @@ enum Change {
     Number,
     /// With another reason where a run fails.
     Reason,
+    /// With another number, and an address in memory that is another each time, in the reason where a run fails, which is of the same kind.
+    Words,
     /// Where the first one fails, too.
     FailsNowhere,
     /// Never.
@@ -96,19 +98,26 @@ enum Change {
 }
 
 impl Change {
-    const ALL: [Self; 5] =
-        [Self::Nothing, Self::Number, Self::Reason, Self::FailsNowhere, Self::FailsEverywhere];
+    const ALL: [Self; 6] = [
+        Self::Nothing,
+        Self::Number,
+        Self::Reason,
+        Self::Words,
+        Self::FailsNowhere,
+        Self::FailsEverywhere,
+    ];
 
     /// A function with this change, which counts its calls.
     fn function(self, calls: &Arc<AtomicU64>) -> SimulatorFunction {
         let (first, calls) = (answer(), Arc::clone(calls));
         SimulatorFunction::new(move |run: &RunInputs<'_>| {
-            calls.fetch_add(1, Ordering::Relaxed);
+            let call = calls.fetch_add(1, Ordering::Relaxed);
             let x = run.input("x").ok_or("no x")?;
             let y = |y: f64| Ok(vec![("y".to_owned(), y)]);
             match (self, first.run(run)) {
                 (Self::Number, Ok(_)) => y(x.next_up()),
                 (Self::Reason, Err(_)) => Err("beyond the table".to_owned()),
+                (Self::Words, Err(_)) => Err(format!("too large: {:#x}", 0xab_cdef * (call + 1))),
                 (Self::FailsNowhere, Err(_)) => y(x),
                 (Self::FailsEverywhere, Ok(_)) => Err("not at all".to_owned()),
                 (_, answered) => answered,
@@ -170,7 +179,14 @@ proptest! {
             let row = now.rows().nth(run(*place) as usize).unwrap();
             own.iter().any(|(name, values)| Some(cell(values, *place)) != row.cell(name))
         };
-        let others = (0..kept.len()).filter(is_other).count();
+        // Of a reason the kind counts, for its words may be others each time.
+        let is_otherwise = |place: &usize| {
+            let row = now.rows().nth(run(*place) as usize).unwrap();
+            let is = |(name, values): &(&str, &KeptValues)| Some(cell(values, *place)) == row.cell(name);
+            let is_same_kind = own.iter().any(|own| own.0 == "status_kind" && is(own));
+            own.iter().any(|own| !is(own) && !(is_same_kind && own.0 == "status"))
+        };
+        let others = (0..kept.len()).filter(is_otherwise).count();
         calls.store(0, Ordering::Relaxed);
         let shown = if in_shards {
             let shard = Shard::new(1, 2).unwrap();
