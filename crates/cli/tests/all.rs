@@ -3,6 +3,8 @@
 
 mod check;
 mod command_line;
+#[cfg(unix)]
+mod commands_told;
 mod compare;
 #[cfg(target_os = "linux")]
 mod disk;

@@ -324,7 +324,8 @@ fn worst(scenario: &impl Subject, head: &Head) -> Option<Section> {
             format!("study.replay({run}, model={model:?})")
         }),
         None => ("to see it, in the folder of the study", |model, run| {
-            format!("gyradius replay . --model {model} --run {run}")
+            // A name may begin with a hyphen.
+            format!("gyradius replay . --model={model} --run {run}")
         }),
     };
     let unit = |judged: &Judged| unit_of(scenario, judged.judgement.requirement().quantity());

@@ -12,6 +12,7 @@ use gyradius_campaign::{
 };
 #[cfg(test)]
 use gyradius_campaign::{Cell, Row, run};
+use gyradius_report::visible_json;
 use rayon::ThreadPool;
 use std::{
     collections::BTreeSet,
@@ -258,7 +259,7 @@ fn write<C: Subject>(
         folder.adopt(blocks, &empty, keeping, threads, options.stop.as_deref())?;
     }
     folder.write("scenario.toml", &scenario.to_toml())?;
-    let written = serde_json::to_string_pretty(summary)? + "\n";
+    let written = visible_json(&serde_json::to_string_pretty(summary)?) + "\n";
     folder.write("summary.json", &written)?;
     // The report is made from what a reader of the folder has.
     let summary: C::Summary = serde_json::from_str(&written)?;

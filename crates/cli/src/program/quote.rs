@@ -1,6 +1,6 @@
 //! Text as one word of a script for bash.
 
-use std::{ffi::OsStr, fmt::Write};
+use std::{ffi::OsStr, fmt::Write, path::Path};
 
 use gyradius_study::visible;
 
@@ -28,6 +28,12 @@ pub(crate) fn quote(text: &OsStr) -> String {
             word + "'"
         }
     }
+}
+
+/// A path as one word of a command, which takes it for no option if it begins with a hyphen.
+pub(crate) fn quote_path(path: &Path) -> String {
+    let is_option = path.as_os_str().as_encoded_bytes().starts_with(b"-");
+    quote(if is_option { Path::new(".").join(path) } else { path.to_owned() }.as_os_str())
 }
 
 /// What means itself in a shell, at any place of a word.

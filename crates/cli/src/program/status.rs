@@ -3,7 +3,12 @@
 use gyradius_study::Status;
 use std::{error::Error, fmt::Write, path::Path, process::ExitCode};
 
-use crate::program::{args::StatusArgs, output::print, replay::DEFAULT};
+use crate::program::{
+    args::StatusArgs,
+    output::{print, print_json},
+    quote::quote_path,
+    replay::DEFAULT,
+};
 
 /// What the program returns while runs are missing.
 pub(crate) const UNFINISHED: u8 = 1;
@@ -15,7 +20,7 @@ pub(crate) fn status(arguments: &StatusArgs) -> Result<ExitCode, Box<dyn Error>>
     let folder = arguments.study.as_deref().unwrap_or(Path::new(DEFAULT));
     let status = Status::read(folder)?;
     if arguments.json {
-        print(&(serde_json::to_string_pretty(&status)? + "\n"))?;
+        print_json(&serde_json::to_string_pretty(&status)?)?;
     } else {
         print(&text(&status, folder))?;
     }
@@ -50,7 +55,7 @@ fn text(status: &Status, folder: &Path) -> String {
         let _ = writeln!(
             text,
             "All runs are done. `gyradius report {}` puts them together.",
-            folder.display()
+            quote_path(folder)
         );
     } else {
         text.push_str("These runs are missing:\n");

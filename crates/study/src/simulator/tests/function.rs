@@ -113,7 +113,7 @@ proptest! {
         prop_assert!(page.contains("study.replay(") && page.contains("in the program that has the function"));
         prop_assert!(!page.contains("gyradius replay") && !page.contains("gyradius study --scenario"));
         let page = fs::read_to_string(other.join("report.md")).unwrap();
-        prop_assert!(page.contains("gyradius replay . --model") && page.contains("gyradius study --scenario"));
+        prop_assert!(page.contains("gyradius replay . --model=") && page.contains("gyradius study --scenario"));
         // A run again is its row.
         let mut again = SimulatorReplay::new(&function, None, 17).unwrap();
         again.hold_against(&own).unwrap();
