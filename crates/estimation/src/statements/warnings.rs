@@ -207,7 +207,7 @@ impl fmt::Display for StatementWarning {
         match *self {
             Self::Missed { entry, stated: 0.0, implied, because: MissedBecause::Tied } => write!(
                 f,
-                "{}: no deviation is stated, and {} kg·m² comes out: the moments of a body are tied together, each being the sum of \
+                "{}: a deviation of 0 kg·m² is stated, and {} comes out: the moments of a body are tied together, each being the sum of \
                  two second moments, and the roots of these cannot hold it wholly while the other moments scatter",
                 NAMES[entry],
                 Short(implied)
