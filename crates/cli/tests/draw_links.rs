@@ -238,3 +238,57 @@ fn blocks_for_gazebo_change_no_link() {
     let alone = ["alone.urdf", "-n", "1", "--mass", "5%", "--links", "a"];
     assert!(refused(&shell, &alone).contains("the links with inertia are b"));
 }
+
+/// A file without links that can be drawn, which includes others by any of the ways: they are named as `check` names them, whether there
+/// are links without an inertia or not.
+#[test]
+fn files_that_only_include_others_name_them() {
+    let shell = Scratch::new();
+    let scene = |ways: &str, link: &str| {
+        format!("<mujoco><asset/>{ways}<worldbody>{link}</worldbody></mujoco>")
+    };
+    let world = |ways: &str, link: &str| {
+        format!(
+            "<sdf version='1.9'><world name='w'>{ways}<model name='m'>{link}</model></world></sdf>"
+        )
+    };
+    let uri = |name: &str| format!("<include><uri>model://{name}</uri></include>");
+    let include = |name: &str| format!("<include file='{name}'/>");
+    for link in [false, true] {
+        let [body, of_model] =
+            ["<body name='floor'/>", "<link name='floor'/>"].map(|of| if link { of } else { "" });
+        for count in 1..4 {
+            let names: Vec<String> = (0..count).map(|i| format!("arm{i}.xml")).collect();
+            let all = |way: &dyn Fn(&str) -> String| {
+                names.iter().map(|name| way(name)).collect::<Vec<_>>().join("\n")
+            };
+            for (file, text) in [
+                ("scene.xml", scene(&all(&include), body)),
+                ("world.sdf", world(&all(&uri), of_model)),
+            ] {
+                fs::write(shell.path(file), text).unwrap();
+                let output = shell.run(&["draw", file, "-n", "1", "--mass", "5%"]);
+                let message = String::from_utf8(output.stderr).unwrap();
+                let told = if count == 1 {
+                    "1 included file is".to_owned()
+                } else {
+                    format!("{count} included files are")
+                };
+                let told = format!("{told} not followed: ");
+                let found = message.find(&told).map(|at| &message[at..]);
+                assert!(
+                    output.status.code() == Some(2) && message.contains("line 1: "),
+                    "{message}"
+                );
+                assert!(
+                    found.is_some_and(|found| found.contains("arm0.xml; what is")
+                        || found.contains("arm0.xml and others; what is")),
+                    "{message}"
+                );
+                let check = shell.run(&["check", file]);
+                let all = String::from_utf8([check.stdout, check.stderr].concat()).unwrap();
+                assert!(all.contains(&told), "{all}");
+            }
+        }
+    }
+}

@@ -196,9 +196,10 @@ impl<'a> RobotDraw<'a> {
         left.extend(without.map(|name| (name.clone(), LeftBecause::NoInertia)));
         if links.is_empty() {
             // What can be mended is told before links without an inertia: macros that are to be expanded, numbers that cannot be read,
-            // and inertias that stand where none is read.
+            // inertias that stand where none is read, and files that are included, which can be drawn in the place of this one.
             let gap = |kind| robot.gaps().iter().find(move |gap| gap.kind() == kind);
             let (macros, misplaced) = (gap(GapKind::Macros), gap(GapKind::Misplaced));
+            let included = gap(GapKind::Included);
             let mut picked = left.iter().filter(|(_, why)| *why != LeftBecause::NotPicked);
             let is_problem = |(_, why): &&(_, _)| matches!(why, LeftBecause::Problem(_));
             let told = |(name, why): &(String, LeftBecause)| format!(": \"{name}\": {why}");
@@ -207,6 +208,9 @@ impl<'a> RobotDraw<'a> {
                 .map(|gap| format!(": {gap}"))
                 .or_else(|| picked.clone().find(is_problem).map(told))
                 .or_else(|| misplaced.map(of_gap))
+                .or_else(|| {
+                    Some(of_gap(included?) + "; what is included can be drawn as a file of its own")
+                })
                 .or_else(|| picked.next().map(told))
                 .unwrap_or_default();
             return Err(RobotDrawError::Nothing { format: robot.format(), why });
