@@ -15,6 +15,7 @@ mod law;
 mod limits;
 mod list;
 mod load;
+mod meant;
 mod model;
 mod model_file;
 mod outside;

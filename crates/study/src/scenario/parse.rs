@@ -10,7 +10,10 @@ use toml::{
     de::{DeTable, DeValue},
 };
 
-use super::placed::{Placed, Step, said};
+use super::{
+    meant::with_meant,
+    placed::{Placed, Step, said},
+};
 
 /// Longest reason that is told.
 const MOST_CHARACTERS: usize = 400;
@@ -46,7 +49,8 @@ fn parsed<T: DeserializeOwned>(text: &str) -> Result<T, String> {
         located(reason, span.map(|span| span.start), text)
     })?;
     T::deserialize(Placed(values.into())).map_err(|error| {
-        let reason = told(&error.reason);
+        let reason = with_meant(&error.reason).unwrap_or_else(|| error.reason.clone());
+        let reason = told(&reason);
         let start = start_of(error.path(), reason.starts_with("unknown field"), text);
         let message = located(reason, start, text);
         let path = error.said();
