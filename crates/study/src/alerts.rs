@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 use std::mem::discriminant;
 
 use crate::{
-    Fleet, folded::FoldedRoot, rounding::Rounding, scenario::Dispersed, unmatched::UnmatchedLaw,
+    Fleet, folded::FoldedRoot, off_nominal::OffNominal, rounding::Rounding, scenario::Dispersed,
+    unmatched::UnmatchedLaw,
 };
 
 /// A kurtosis above which tails are heavy: intervals of standard deviations then cover less often than they say.
@@ -18,9 +19,6 @@ pub(crate) const HEAVY: f64 = 10.0;
 pub(crate) const NEAR: f64 = 0.01;
 /// A share of the drawn bodies: more of them must be near the boundary, that it is told.
 const MANY: f64 = 0.001;
-/// A factor between the mean of a law and the nominal value beside it that nobody means: a decimal point that slipped makes ten, but for
-/// the rounding and the spread of the law.
-const FAR: f64 = 10.0 * (1.0 - 1e-6);
 /// Degrees between the angular momentum at the start and the spin axis: from here on, another principal axis may be nearer.
 const OFF_AXIS_DEG: f64 = 45.0;
 
@@ -72,9 +70,7 @@ pub(crate) enum Alert {
     /// The angular momentum of the payload at the start is far from the axis that it is to spin about.
     OffAxis { angle_deg: f64, spin_axis: [f64; 3] },
     /// The mean of a law is far from the nominal value that the same scenario states.
-    FarFromNominal { quantity: String, nominal: f64, mean: f64 },
-    /// The mean of the law of a mass centre is far from the nominal one, from which it is told.
-    CentreOffNominal { body: String, mean_m: [f64; 3] },
+    OffNominal(OffNominal),
     /// The fourth moment of outcomes is large.
     HeavyTails {
         model: String,
@@ -155,14 +151,6 @@ impl Alert {
         (angle_deg > OFF_AXIS_DEG).then_some(Self::OffAxis { angle_deg, spin_axis })
     }
 
-    /// That the mean of what a law draws is ten times the nominal value, or a tenth of it, or of the other sign. Beside a nominal
-    /// value of zero any mean will do.
-    pub(crate) fn far_from_nominal(quantity: &str, nominal: f64, mean: f64) -> Option<Self> {
-        let is_far = nominal != 0.0 && !(1.0 / FAR..=FAR).contains(&(mean / nominal));
-        let quantity = quantity.to_owned();
-        is_far.then_some(Self::FarFromNominal { quantity, nominal, mean })
-    }
-
     /// That outcomes, by their labels and of these scales, have heavy tails: they vary by more than this rounding.
     pub(crate) fn heavy_tails<'a>(
         model: &str,
@@ -230,26 +218,7 @@ impl Alert {
                      that axis.",
                     direction(*spin_axis)
                 )),
-            Self::FarFromNominal { quantity, nominal, mean } => Text::default()
-                .strong("A law is far from the nominal value")
-                .plain(": ")
-                .code(quantity)
-                .plain(format!(
-                    " is {} in the scenario, and the mean of its law is {}. Nominal bodies, intended directions and models \
-                     about the nominal bodies are those of the former. Is there a digit or a unit too much in one of them?",
-                    significant(*nominal, 4),
-                    significant(*mean, 4)
-                )),
-            Self::CentreOffNominal { body, mean_m } => {
-                let metres = mean_m.map(|x| significant(x, 4)).join(", ");
-                Text::default()
-                    .strong(format!("The mass centre of the {body} is far from the nominal one"))
-                    .plain(format!(
-                        ": the mean of its law is ({metres}) m. A scenario tells the mass centre from the nominal one, along body \
-                         axes; a law that was made elsewhere may tell it from the origin of its own samples. Then take the \
-                         nominal mass centre off its means."
-                    ))
-            }
+            Self::OffNominal(law) => Text::default().strong(law.title()).plain(format!(": {law}")),
             Self::HeavyTails { .. } => return is_first().then(|| together::heavy_tails(all)),
             Self::NearBoundary { model, body, near, drawn, margin } => {
                 let share = significant(100.0 * *near as f64 / *drawn as f64, 3);
@@ -308,3 +277,5 @@ mod some_runs_tests;
 mod tests;
 #[cfg(test)]
 mod vehicle_tests;
+#[cfg(test)]
+mod whole_value_tests;

@@ -11,8 +11,8 @@ use std::{
 };
 
 use crate::{
-    Fleet, FoldedRoot, Notice, Options, Rare, RareOptions, ResultsError, Scenario, ScenarioError,
-    SimulatorScenario, Status, Study, StudyError, UnmatchedLaw,
+    Fleet, FoldedRoot, Notice, OffNominal, Options, Rare, RareOptions, ResultsError, Scenario,
+    ScenarioError, SimulatorScenario, Status, Study, StudyError, UnmatchedLaw,
     carry_out::carry_out,
     decisions, drivers,
     head::{Head, Judged, Missing},
@@ -143,6 +143,12 @@ impl AnyScenario {
     #[must_use]
     pub fn folded(&self) -> Vec<FoldedRoot> {
         of_either!(self, scenario => scenario.folded())
+    }
+
+    /// Laws whose means are far from the nominal values beside them.
+    #[must_use]
+    pub fn off_nominal(&self) -> Vec<OffNominal> {
+        of_either!(self, scenario => scenario.off_nominal())
     }
 
     /// Laws of its bodies that have not the moments to which they were to be matched.

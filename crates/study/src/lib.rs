@@ -99,6 +99,7 @@ pub use gyradius_campaign::{
 pub use gyradius_dispersion::ModelKind;
 pub use gyradius_report::{visible, visible_json};
 pub use head::{Head, Judged, Missing};
+pub use off_nominal::OffNominal;
 pub use options::{Notice, Options};
 pub use quantity::Quantity;
 pub use rare::{Rare, RareEstimate, RareFailures, RareMethod, RareOptions, RareWarning};

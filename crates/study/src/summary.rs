@@ -17,7 +17,6 @@ use crate::{
     faults::GivenFault,
     head::Head,
     model::Model,
-    off_nominal::off_nominal,
     quantity::Quantity,
     regions::RegionSummary,
     run::Case,
@@ -233,11 +232,7 @@ impl Summary {
         let alerts = models.iter().zip(runs).flat_map(|(model, seen)| model.alerts(scenario, seen));
         let alerts =
             alerts.chain(Alert::off_axis(scenario.payload().moving(), scenario.spin_axis()));
-        // Of what starts late in some runs the mean is that of those.
-        let in_all = models.first().into_iter().flat_map(|model| &model.dispersed);
-        let in_all = in_all.filter(|d| d.late.is_none());
-        let numbers = in_all.map(|d| (&*d.quantity, d.nominal, d.law_mean));
-        let alerts = alerts.chain(off_nominal(scenario, numbers));
+        let alerts = alerts.chain(scenario.off_nominal().into_iter().map(Alert::OffNominal));
         let alerts = alerts.chain(scenario.folded().into_iter().map(Alert::Folded));
         let alerts = alerts.chain(scenario.unmatched().into_iter().map(Alert::Unmatched));
         let head = Head { alerts: alerts.collect(), ..head_of(scenario, columns) };

@@ -11,9 +11,10 @@ use std::{
 
 use crate::program::{
     args::DrawArgs,
+    doubts::tell_doubts,
     draw_output::{format, refuse_input},
     draw_robot::{draw_robot, is_robot},
-    output::{complain, file_of, say},
+    output::{complain, file_of},
     progress,
     signals::Signals,
     study::scenario,
@@ -41,12 +42,7 @@ pub(crate) fn draw(arguments: &DrawArgs) -> Result<ExitCode, Box<dyn Error>> {
     let file = file_of(arguments.output.as_deref());
     let format = format(arguments, file)?;
     let scenario = scenario(arguments.scenario.as_deref(), arguments.seed)?;
-    for root in scenario.folded() {
-        say(&format!("warning: {root}"));
-    }
-    for law in scenario.unmatched() {
-        say(&format!("warning: {law}"));
-    }
+    tell_doubts(&scenario, str::to_owned);
     let signals = Signals::watch()?;
     let options = DrawOptions {
         models: arguments.models.clone(),

@@ -3,6 +3,7 @@
 mod args;
 mod check;
 mod compare;
+mod doubts;
 mod draw;
 mod draw_output;
 mod draw_robot;

@@ -5,6 +5,7 @@ use std::{error::Error, process::ExitCode};
 
 use crate::program::{
     args::{RareArgs, RareMethodArg},
+    doubts::tell_doubts,
     output::{complain, print, print_json},
     progress,
     signals::Signals,
@@ -14,6 +15,7 @@ use crate::program::{
 /// Runs the verb.
 pub(crate) fn rare(arguments: &RareArgs) -> Result<ExitCode, Box<dyn Error>> {
     let scenario = scenario(arguments.scenario.as_deref(), arguments.seed)?;
+    tell_doubts(&scenario, str::to_owned);
     let signals = Signals::watch()?;
     let options = RareOptions {
         model: arguments.model.clone(),

@@ -9,6 +9,7 @@ use std::{error::Error, path::Path, process::ExitCode, time::Duration};
 
 use crate::program::{
     args::{ScenarioArgs, StudyArgs},
+    doubts::tell_doubts,
     number::short,
     output::{complain, print, print_json, say},
     progress,
@@ -40,6 +41,9 @@ pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
     let columns = arguments.columns.clone().or_else(|| kept.columns().map(<[_]>::to_vec));
     let scenario = scenario.with_kept(&Kept::new(arguments.rows.unwrap_or(kept.rows()), columns));
     let shard = arguments.shard.map(AskedShard::find).transpose()?;
+    if !arguments.quiet {
+        tell_doubts(&scenario, str::to_owned);
+    }
     let signals = Signals::watch()?;
     let options = Options {
         out: arguments.out.clone(),

@@ -147,6 +147,29 @@ impl ScalarLawForm {
         }
     }
 
+    /// The same law, of values that are greater by `by`, to twelve digits: further ones are what rounding leaves.
+    #[must_use]
+    pub fn moved(&self, by: f64) -> Self {
+        let place = |x: f64| {
+            let digits = 11 - x.abs().max(by.abs()).log10().floor().clamp(-290.0, 11.0) as i32;
+            let scale = 10_f64.powi(digits);
+            // No sign before a zero.
+            ((x + by) * scale).round() / scale + 0.0
+        };
+        let value = |(key, value): &(&'static str, Value)| {
+            let is_place = matches!(self.law.key(key), Some(Of::Place | Of::Places));
+            let moved = match value {
+                Value::Number(x) if is_place => place(*x).into(),
+                Value::List(all) if is_place => {
+                    Value::List(all.iter().map(|x| place(*x)).collect())
+                }
+                Value::Number(_) | Value::List(_) | Value::Matrix(_) => value.clone(),
+            };
+            (*key, moved)
+        };
+        Self { values: self.values.iter().map(value).collect(), ..self.clone() }
+    }
+
     fn read(&self, nominal: Option<f64>, unit: LawUnit) -> Result<ScalarLaw, Refused> {
         let refused = |key, problem: String| Refused {
             inner: ScalarLawFormError { key: Some(key), problem },

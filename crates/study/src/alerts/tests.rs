@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::{
-    Scenario, Summary,
+    OffNominal, Scenario, Summary,
     body::{Body, Entry},
     model::Model,
     quantity::Quantity,
@@ -172,7 +172,7 @@ fn laws_far_from_nominal_values_are_told() {
                 .alerts
                 .iter()
                 .filter_map(|alert| match alert {
-                    Alert::FarFromNominal { quantity, nominal, mean } => {
+                    Alert::OffNominal(OffNominal::Value { quantity, nominal, mean }) => {
                         Some((quantity.clone(), mean / nominal))
                     }
                     _ => None,
@@ -232,10 +232,10 @@ fn mass_centres_far_from_nominal_are_told() {
         }
         let text = toml::to_string(&table).unwrap();
         let scenario = Scenario::from_toml(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-        let alerts = crate::off_nominal::off_nominal(&scenario, std::iter::empty());
-        let told = alerts.iter().filter_map(|alert| match alert {
-            Alert::CentreOffNominal { body, mean_m } => Some((body.clone(), *mean_m)),
-            _ => None,
+        let laws = scenario.off_nominal();
+        let told = laws.iter().map(|law| match law {
+            OffNominal::Centre { body, change_m, is_of_change: true } => (body.clone(), *change_m),
+            other => panic!("{other}\n{text}"),
         });
         assert_eq!(told.collect::<Vec<_>>(), expected, "{mean} {sigma} {axis} {whole}\n{text}");
         if case % 53 == 0 {
@@ -415,8 +415,7 @@ proptest! {
             Alert::NearBoundary { near, body, .. } => ("near", format!("{near} {body}")),
             Alert::Folded(root) => ("folded", format!("{} {}", root.body, root.quantity)),
             Alert::Backwards { backwards, runs, .. } => ("backwards", format!("{backwards} of {runs}")),
-            Alert::FarFromNominal { quantity, .. } => ("far", quantity.clone()),
-            Alert::CentreOffNominal { body, .. } => ("centre", body.clone()),
+            Alert::OffNominal(law) => ("off nominal", law.to_string()),
             Alert::OffAxis { angle_deg, .. } => ("off axis", angle_deg.to_string()),
             Alert::Unmatched(law) => ("unmatched", law.to_string()),
         });
@@ -451,10 +450,10 @@ proptest! {
         let squares: f64 = known.map(|(mean, _)| mean * mean).sum();
         let off = squares.sqrt() / f64::sqrt(0.5 * trace / mass);
         prop_assume!((off - 0.1).abs() > 1e-9);
-        let alerts = crate::off_nominal::off_nominal(&scenario, std::iter::empty());
-        let told = alerts.iter().find_map(|alert| match alert {
-            Alert::CentreOffNominal { mean_m, .. } => Some(*mean_m),
-            _ => None,
+        let laws = scenario.off_nominal();
+        let told = laws.iter().find_map(|law| match law {
+            OffNominal::Centre { change_m, .. } => Some(*change_m),
+            OffNominal::Change { .. } | OffNominal::Value { .. } => None,
         });
         prop_assert_eq!(told, (off > 0.1).then(|| axes.map(|(mean, _)| mean)));
     }

@@ -172,6 +172,16 @@ impl UncertainBody {
         }
     }
 
+    /// What the gyration lengths are called, and the laws of the roots that they make at the nominal mass, if changes of lengths are given.
+    pub(crate) fn changes_of_lengths(&self) -> Option<(&'static str, &[ScalarLaw; 3])> {
+        match (&self.inertia, &self.law) {
+            (BodyInertia::Principal { roots, lengths: true, .. }, None) => {
+                Some((LENGTH, independent(roots)?))
+            }
+            (BodyInertia::Principal { .. } | BodyInertia::Model(_), _) => None,
+        }
+    }
+
     /// Roots of the body, which has this name, whose laws lie below zero; nothing of models without such.
     pub(crate) fn folded(&self, body: &str) -> Vec<FoldedRoot> {
         match &self.inertia {

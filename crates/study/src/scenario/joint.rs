@@ -1,6 +1,6 @@
 //! Numbers that every run draws, how they are correlated, and how those of a body go together.
 
-use gyradius_dispersion::{Correlation, ScalarLaw};
+use gyradius_dispersion::{Correlation, LawUnit, ScalarLaw, ScalarLawForm};
 use gyradius_separation::{BodyParameter, LoadParameter, StackParameter};
 
 use super::{
@@ -52,6 +52,15 @@ pub(crate) struct Dispersed<T = Target> {
     /// For what it is drawn.
     pub(crate) each: Each,
     pub(crate) target: T,
+    /// What the file says of its change from the nominal value; none where it says a law of the value itself.
+    pub(crate) change: Option<Change>,
+}
+
+/// A law of a change as a file says it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Change {
+    pub(crate) form: ScalarLawForm,
+    pub(crate) unit: LawUnit,
 }
 
 /// What a number is of: a component, from 0, of a parameter.

@@ -88,13 +88,18 @@ pub(crate) struct VectorLaw {
 }
 
 impl VectorLawFile {
-    /// For what a component is drawn, and the key of its law, of a vector whose key is `field`.
-    pub(crate) fn drawn(&self, field: &str, component: usize) -> (Each, String) {
+    /// The law of a component, for what it is drawn, and its key, of a vector whose key is `field`.
+    pub(crate) fn component(
+        &self,
+        field: &str,
+        component: usize,
+    ) -> (Option<&ScalarLawForm>, Each, String) {
         match self {
-            Self::Same(law) => (law.drawn, field.to_owned()),
+            Self::Same(law) => (Some(&law.form), law.drawn, field.to_owned()),
             Self::Each(laws) => {
-                let drawn = laws.get(component).map_or_else(Each::default, |law| law.drawn);
-                (drawn, format!("{field}[{}]", component + 1))
+                let law = laws.get(component);
+                let drawn = law.map_or_else(Each::default, |law| law.drawn);
+                (law.map(|law| &law.form), drawn, format!("{field}[{}]", component + 1))
             }
         }
     }
@@ -127,7 +132,7 @@ impl VectorLawFile {
             } else {
                 law.form.about(*nominal, unit)
             };
-            law.map_err(|error| refused(&self.drawn(field, i).1, &error))
+            law.map_err(|error| refused(&self.component(field, i).2, &error))
         });
         Ok(VectorLaw { laws: laws.collect::<Result<_, _>>()?, pairs: Vec::new() })
     }

@@ -1,13 +1,15 @@
 //! What is uncertain, as it is put together from a scenario file.
 
-use gyradius_dispersion::{Correlation, CorrelationProblem, JointScalar, LawUnit, ScalarLaw};
+use gyradius_dispersion::{
+    Correlation, CorrelationProblem, JointScalar, LawUnit, ScalarLaw, ScalarLawForm,
+};
 
 use super::{
     ScenarioError,
     body::UncertainBody,
     each::{DRAWN, Each},
     file::CorrelationFile,
-    joint::{Dispersed, Joint, Number, Target},
+    joint::{Change, Dispersed, Joint, Number, Target},
     joint_body::{JointBody, Quantity, part, region_key},
     law::{self, GivenLaw, VectorLawFile},
     load::{self, Uncertain},
@@ -65,7 +67,8 @@ impl<T> List<T> {
         target: T,
     ) {
         let [column, part_of] = [name; 2].map(str::to_owned);
-        self.all.push(Dispersed { column, part_of, given, nominal, law, each, target });
+        let change = None;
+        self.all.push(Dispersed { column, part_of, given, nominal, law, each, target, change });
     }
 
     /// A number with a name that ends in its unit, if it has one, the parameter that it is part of, and the place of its law.
@@ -78,8 +81,15 @@ impl<T> List<T> {
         target: T,
     ) {
         let column = if unit.is_empty() { name.to_owned() } else { format!("{name}_{unit}") };
-        let (part_of, given) = (in_words(parameter), given.to_owned());
-        self.all.push(Dispersed { column, part_of, given, nominal, law, each, target });
+        let (part_of, given, change) = (in_words(parameter), given.to_owned(), None);
+        self.all.push(Dispersed { column, part_of, given, nominal, law, each, target, change });
+    }
+
+    /// That the last number has a law of its change from the nominal value, and how the file says it.
+    fn changes(&mut self, form: &ScalarLawForm, unit: LawUnit) {
+        if let Some(last) = self.all.last_mut() {
+            last.change = Some(Change { form: form.clone(), unit });
+        }
     }
 
     /// A parameter of what stands at a place of the file, and is called by a name.
@@ -135,10 +145,11 @@ impl<T> List<T> {
             (Some(law), None) => (&place.field, LawUnit::OWN, law),
             (None, Some(law)) => (&place.percent, LawUnit::percent_of(nominal), law),
         };
-        let each = self.each(field, law.drawn)?;
-        let law = law::about(&law.form, field, nominal, unit)?;
+        let (each, form) = (self.each(field, law.drawn)?, &law.form);
+        let law = law::about(form, field, nominal, unit)?;
         positive(field, nominal, &law)?;
         self.push([&place.name, &place.name, field], place.unit, nominal, (law, each), target);
+        self.changes(form, unit);
         Ok(())
     }
 
@@ -154,10 +165,13 @@ impl<T> List<T> {
         let first = self.all.len();
         for (i, (scalar, nominal)) in vector.laws.into_iter().zip(nominal).enumerate() {
             let name = format!("{}_{}", place.name, i + 1);
-            let (each, field) = law.drawn(&place.field, i);
+            let (form, each, field) = law.component(&place.field, i);
             let each = self.each(&field, each)?;
             let names = [name.as_str(), &place.name, &field];
             self.push(names, place.unit, *nominal, (scalar, each), target(i));
+            if let Some(form) = form {
+                self.changes(form, LawUnit::OWN);
+            }
         }
         for (a, b, coefficient) in vector.pairs {
             self.pairs.push((first + a, first + b, coefficient));
@@ -230,6 +244,7 @@ impl<T> List<T> {
                 law: law.clone(),
                 each,
                 target: number,
+                change: None,
             };
             laws.iter().enumerate().map(root).collect()
         });

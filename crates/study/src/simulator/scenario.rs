@@ -16,11 +16,11 @@ use super::{
     file::{BodyName, File, OutputFile},
 };
 use crate::{
-    Fleet, FoldedRoot, ScenarioError, UnmatchedLaw,
+    Fleet, FoldedRoot, OffNominal, ScenarioError, UnmatchedLaw,
     model::Modelled,
     scenario::{
-        Axes, Joint, List, ModelFile, ModelLaw, ModelSpec, Size, check_models, framed, parse_toml,
-        place, refused,
+        Axes, Joint, List, ModelFile, ModelLaw, ModelSpec, Size, UncertainBody, check_models,
+        framed, parse_toml, place, refused,
     },
 };
 
@@ -240,6 +240,15 @@ impl SimulatorScenario {
     #[must_use]
     pub fn folded(&self) -> Vec<FoldedRoot> {
         self.bodies.iter().flat_map(|body| body.uncertain.folded(&body.name)).collect()
+    }
+
+    /// Laws whose means are far from the nominal values beside them.
+    #[must_use]
+    pub fn off_nominal(&self) -> Vec<OffNominal> {
+        let bodies: Vec<(&str, &UncertainBody)> =
+            self.bodies.iter().map(|body| (body.name.as_str(), &body.uncertain)).collect();
+        let axes = self.models.iter().find_map(|model| model.law.own_axes());
+        OffNominal::all(self.dispersed.all.iter(), &self.dispersed, &bodies, axes)
     }
 
     /// Laws of the bodies that have not the moments to which they were to be matched, since no law of their kind has.

@@ -280,6 +280,7 @@ impl Subject for SimulatorScenario {
         let overview = Overview::of_surveys(&title, &shown, &surveys)?;
         let alerts = surveys.iter().zip(&near).enumerate();
         let alerts = alerts.flat_map(|(place, seen)| self.alerts(&overview, place, seen));
+        let alerts = alerts.chain(self.off_nominal().into_iter().map(Alert::OffNominal));
         let alerts = alerts.chain(self.folded().into_iter().map(Alert::Folded));
         let alerts = alerts.chain(self.unmatched().into_iter().map(Alert::Unmatched));
         let head = Head { alerts: alerts.collect(), ..head_of(self, columns) };

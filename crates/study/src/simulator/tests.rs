@@ -8,6 +8,7 @@ mod interrupted;
 mod joint;
 mod kept;
 mod models;
+mod off_nominal;
 mod refusals;
 mod told;
 mod vehicles;
