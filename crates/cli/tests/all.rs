@@ -10,6 +10,7 @@ mod compare;
 mod disk;
 mod draw;
 mod draw_again;
+mod draw_laws;
 mod draw_links;
 mod draw_robots;
 mod drivers;

@@ -78,7 +78,9 @@ fn pasted(scenario: &str, body: &str, fragment: &str) -> String {
         }
         if keep {
             text.push_str(&(line.to_owned() + "\n"));
-        } else if ["mass_kg", "position_m"].iter().any(|key| line.starts_with(key)) {
+        } else if line.starts_with("position_m")
+            || (line.starts_with("mass_kg") && !fragment.contains("\nmass_kg = "))
+        {
             rest.push_str(&(line.to_owned() + "\n"));
         }
     }

@@ -65,5 +65,5 @@ fn every_command_of_the_readme_works() {
         shell.done(arguments, 0);
         count += 1;
     }
-    assert_eq!(count, 9);
+    assert_eq!(count, 10);
 }

@@ -14,8 +14,8 @@ use std::{
 };
 
 use crate::{
-    Scenario, ScenarioError, SimulatorScenario, column::Column, model::Model,
-    simulator::SimulatorDraws, subject::Subject,
+    LawFile, Scenario, ScenarioError, SimulatorScenario, column::Column, law_file::LawDraws,
+    model::Model, simulator::SimulatorDraws, subject::Subject,
 };
 
 /// Which draws, and how they are written.
@@ -86,6 +86,16 @@ impl<'a> Draw<'a> {
         Self::of(scenario, Drawn::Simulator(models), options)
     }
 
+    /// As [`new`](Self::new), of bodies with laws and no scenario. A scenario of a simulator into which their tables are copied, with a model
+    /// `principal` and the same seed, has the same values in the columns of the same names, to the bit; so has one of separations.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn of_laws(laws: &'a LawFile, options: &DrawOptions) -> Result<Self, DrawError> {
+        let models = chosen(laws.scenario(), options, |place| laws.draws(place))?;
+        Self::of(laws.scenario(), Drawn::Laws(models), options)
+    }
+
     fn of<C: Subject>(
         scenario: &C,
         models: Drawn<'a>,
@@ -146,6 +156,7 @@ impl<'a> Draw<'a> {
         match &self.models {
             Drawn::Separation(models) => self.each_of(models, more, &mut take),
             Drawn::Simulator(models) => self.each_of(models, more, &mut take),
+            Drawn::Laws(models) => self.each_of(models, more, &mut take),
         }
     }
 
@@ -169,6 +180,7 @@ const MOST: u64 = i64::MAX as u64;
 enum Drawn<'a> {
     Separation(Vec<(String, SeparationDraws<'a>)>),
     Simulator(Vec<(String, SimulatorDraws<'a>)>),
+    Laws(Vec<(String, LawDraws<'a>)>),
 }
 
 impl Drawn<'_> {
@@ -176,6 +188,7 @@ impl Drawn<'_> {
         match self {
             Self::Separation(models) => models.len() as u64,
             Self::Simulator(models) => models.len() as u64,
+            Self::Laws(models) => models.len() as u64,
         }
     }
 
@@ -186,6 +199,7 @@ impl Drawn<'_> {
         match self {
             Self::Separation(models) => columns(models),
             Self::Simulator(models) => columns(models),
+            Self::Laws(models) => columns(models),
         }
     }
 }

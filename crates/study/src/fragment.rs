@@ -96,6 +96,7 @@ impl From<RealizabilityError> for FragmentError {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fragment {
     body: FragmentBody,
+    nominal_mass: Option<f64>,
     inertia: [[f64; 3]; 3],
     roots: Roots,
     covariance: [[f64; 4]; 4],
@@ -143,8 +144,16 @@ impl Fragment {
         };
         let covariance = law.axes().covariance();
         let covariance = std::array::from_fn(|i| std::array::from_fn(|j| covariance[(i, j)]));
-        let (mass, mass_centre, inside) = (None, None, None);
-        let fragment = Self { body, inertia, roots, covariance, mass, mass_centre, inside };
+        let fragment = Self {
+            body,
+            nominal_mass: None,
+            inertia,
+            roots,
+            covariance,
+            mass: None,
+            mass_centre: None,
+            inside: None,
+        };
 
         // As a scenario reads it.
         let read = Inertia::try_from(inertia)?;
@@ -164,6 +173,17 @@ impl Fragment {
             return Err(FragmentError::Mean { degrees: off.to_degrees() });
         }
         Ok(fragment)
+    }
+
+    /// With the nominal mass, kg, of which other numbers may be shares.
+    ///
+    /// # Errors
+    /// It is not positive and finite.
+    pub fn with_nominal_mass(self, mass_kg: f64) -> Result<Self, FragmentError> {
+        if !(mass_kg > 0.0 && mass_kg <= 1e30) {
+            return Err(FragmentError::Beside { field: "mass_kg", value: mass_kg });
+        }
+        Ok(Self { nominal_mass: Some(mass_kg), ..self })
     }
 
     /// With a mass of this standard deviation ([`ScalarLaw::positive`]), in percent of the nominal mass, of whose relative
@@ -196,6 +216,12 @@ impl Fragment {
     #[must_use]
     pub fn with_inside(self, region: Region) -> Self {
         Self { inside: Some(region), ..self }
+    }
+
+    /// The nominal mass, kg, if it is known.
+    #[must_use]
+    pub fn nominal_mass(&self) -> Option<f64> {
+        self.nominal_mass
     }
 
     /// Standard deviation of the mass in percent, and the share of its relative change that the inertia takes.
@@ -244,7 +270,11 @@ impl Fragment {
 impl fmt::Display for Fragment {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let body = self.body;
-        writeln!(f, "[{body}]\ninertia_kg_m2 = [")?;
+        writeln!(f, "[{body}]")?;
+        if let Some(mass_kg) = self.nominal_mass {
+            writeln!(f, "mass_kg = {mass_kg:?}")?;
+        }
+        writeln!(f, "inertia_kg_m2 = [")?;
         for row in self.inertia {
             writeln!(f, "    {row:?},")?;
         }

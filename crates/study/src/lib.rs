@@ -43,6 +43,7 @@ mod folded;
 mod fragment;
 mod groups;
 mod head;
+mod law_file;
 mod loads;
 mod model;
 mod off_nominal;
@@ -99,6 +100,7 @@ pub use gyradius_campaign::{
 pub use gyradius_dispersion::ModelKind;
 pub use gyradius_report::{visible, visible_json};
 pub use head::{Head, Judged, Missing};
+pub use law_file::LawFile;
 pub use off_nominal::OffNominal;
 pub use options::{Notice, Options};
 pub use quantity::Quantity;

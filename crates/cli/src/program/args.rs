@@ -72,11 +72,14 @@ pub(crate) enum Command {
     /// nutation, spring forces) and animation.html (bodies and springs in three dimensions).
     #[command(after_help = REPLAY_EXAMPLES)]
     Replay(ReplayArgs),
-    /// Write what is drawn for the runs of a scenario, without running any; or robots with other mass properties
+    /// Write what is drawn for the runs of a scenario, without running any; or bodies with laws, or robots with other mass properties
     ///
     /// One row a run, for a simulator of your own: the inertias of payload and stage, and whatever else the
     /// scenario disperses, in the columns of the run table. A study of the scenario has the same values, to the
     /// bit. Any number of runs takes the same memory.
+    ///
+    /// Of a file of laws, as `gyradius model` and `gyradius fit` write it with -o or as JSON: one row a draw, with mass, mass centre, inertia and
+    /// principal axes of its bodies, in the columns that a scenario has for them.
     ///
     /// Of a robot: copies in which only the mass, mass centre and inertia of links differ, each of which some body has,
     /// or a table of these.
@@ -465,11 +468,12 @@ pub(crate) struct ReplayArgs {
 
 #[derive(Args, Debug)]
 pub(crate) struct DrawArgs {
-    /// Scenario file (TOML) [default: the built-in study of Peck (2003)], or a robot (URDF, MJCF, SDF)
-    #[arg(value_name = "SCENARIO|ROBOT")]
+    /// Scenario file (TOML) [default: the built-in study of Peck (2003)], a file of laws as `gyradius model` and `gyradius fit` write them
+    /// (TOML, JSON), or a robot (URDF, MJCF, SDF)
+    #[arg(value_name = "SCENARIO|LAWS|ROBOT")]
     pub(crate) scenario: Option<PathBuf>,
 
-    /// Runs of each model; 0 for the columns alone [default: as in the scenario]. Of a robot: how many
+    /// Runs of each model; 0 for the columns alone [default: as in the scenario; 2000 of laws]. Of a robot: how many
     #[arg(short = 'n', long, value_name = "N", allow_negative_numbers = true, value_parser = whole)]
     pub(crate) runs: Option<u64>,
 
@@ -481,7 +485,7 @@ pub(crate) struct DrawArgs {
     #[arg(long = "model", value_name = "NAME")]
     pub(crate) models: Vec<String>,
 
-    /// Seed of all random numbers [default: as in the scenario; 0 of a robot]
+    /// Seed of all random numbers [default: as in the scenario; 1 of laws; 0 of a robot]
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = whole)]
     pub(crate) seed: Option<u64>,
 

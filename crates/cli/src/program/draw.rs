@@ -1,7 +1,9 @@
 //! `gyradius draw`: what is drawn for the runs of a scenario, for other programs; for robots see `draw_robot`.
 
 use gyradius_formats::NewFile;
-use gyradius_study::{AnyScenario, CampaignError, Draw, DrawError, DrawOptions, FormatError};
+use gyradius_study::{
+    AnyScenario, CampaignError, Draw, DrawError, DrawOptions, FormatError, LawFile,
+};
 use std::{
     error::Error,
     io::{self, IsTerminal, Write},
@@ -41,8 +43,7 @@ pub(crate) fn draw(arguments: &DrawArgs) -> Result<ExitCode, Box<dyn Error>> {
     }
     let file = file_of(arguments.output.as_deref());
     let format = format(arguments, file)?;
-    let scenario = scenario(arguments.scenario.as_deref(), arguments.seed)?;
-    tell_doubts(&scenario, str::to_owned);
+    let input = input(arguments)?;
     let signals = Signals::watch()?;
     let options = DrawOptions {
         models: arguments.models.clone(),
@@ -52,9 +53,12 @@ pub(crate) fn draw(arguments: &DrawArgs) -> Result<ExitCode, Box<dyn Error>> {
         format,
         stop: Some(signals.stop()),
     };
-    let draw = match &scenario {
-        AnyScenario::Separation(scenario) => Draw::new(scenario, &options)?,
-        AnyScenario::Simulator(scenario) => Draw::of_simulator(scenario, &options)?,
+    let draw = match &input {
+        Input::Scenario(AnyScenario::Separation(scenario)) => Draw::new(scenario, &options)?,
+        Input::Scenario(AnyScenario::Simulator(scenario)) => {
+            Draw::of_simulator(scenario, &options)?
+        }
+        Input::Laws(laws) => Draw::of_laws(laws, &options)?,
     };
     let written = match file {
         Some(path) => {
@@ -72,6 +76,32 @@ pub(crate) fn draw(arguments: &DrawArgs) -> Result<ExitCode, Box<dyn Error>> {
         }
         other => other.map(|()| ExitCode::SUCCESS),
     }
+}
+
+/// What draws come from.
+enum Input {
+    Scenario(AnyScenario),
+    Laws(Box<LawFile>),
+}
+
+/// Reads it, and says what there is to doubt in it.
+fn input(arguments: &DrawArgs) -> Result<Input, Box<dyn Error>> {
+    let path = arguments.scenario.as_deref();
+    let Some(laws) = path.map(LawFile::read).transpose()?.flatten() else {
+        let scenario = scenario(path, arguments.seed)?;
+        tell_doubts(&scenario, str::to_owned);
+        return Ok(Input::Scenario(scenario));
+    };
+    if !arguments.models.is_empty() {
+        return Err("--model is for scenarios: a file of laws alone has no models".into());
+    }
+    let laws = match arguments.seed {
+        Some(seed) => laws.with_seed(seed)?,
+        None => laws,
+    };
+    let scenario = AnyScenario::Simulator(Box::new(laws.scenario().clone()));
+    tell_doubts(&scenario, |doubt| laws.in_its_words(doubt));
+    Ok(Input::Laws(Box::new(laws)))
 }
 
 fn to_file(draw: &Draw<'_>, path: &Path, force: bool) -> Result<(), Box<dyn Error>> {

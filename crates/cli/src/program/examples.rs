@@ -33,6 +33,9 @@ Examples:
       The next million
   gyradius draw my-vehicle.toml -n 1e9 --format jsonl | my-simulator
       One JSON object after the other, for a program of yours
+  gyradius model body.toml -o law.toml
+  gyradius draw law.toml -n 1000 --seed 7 -o bodies.csv
+      A thousand bodies by the law that was made of statements; `gyradius fit` writes such a file, too
   gyradius draw robot.urdf -n 1000 --mass 10% --centre 5mm --moments 15% --axes 5deg --seed 7 -o robots
       A thousand robots, robots/robot-0000.urdf to robot-0999.urdf, in which only these numbers differ
   gyradius draw robot.xml -n 1e5 --mass 10% --links \"*arm*,base\" -o links.parquet

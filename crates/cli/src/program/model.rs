@@ -165,13 +165,16 @@ fn of_radii(mass_kg: f64, radii: [f64; 3]) -> Result<[[f64; 3]; 3], String> {
     Ok(rows)
 }
 
-/// The inertia at the nominal mass, the mass that it goes with, the mass centre, and the region, from the nominal mass
+/// The nominal mass, the inertia at it, the mass that it goes with, the mass centre, and the region, from the nominal mass
 /// centre.
 fn fragment(
     body: FragmentBody,
     Told { model, body: stated }: &Told,
 ) -> Result<Fragment, Box<dyn Error>> {
     let mut fragment = Fragment::new(body, model.nominal(), model.law_at_nominal_mass())?;
+    if let Some(stated) = stated {
+        fragment = fragment.with_nominal_mass(stated.nominal().mass_kg())?;
+    }
     if let Some(mass) = model.mass() {
         let percent = 100.0 * mass.relative_deviation();
         fragment = fragment.with_mass(percent, mass.inertia_follows())?;

@@ -307,6 +307,17 @@ impl DispersionFile {
         self.of_roots().into_iter().chain(others).find(|(_, given)| *given).map(|(key, _)| key)
     }
 
+    /// A key that is given and says something that depends on the nominal mass.
+    pub(crate) fn needs_mass(&self) -> Option<&'static str> {
+        let keys = [
+            (LENGTHS, self.gyration_lengths_m.is_some()),
+            (INSIDE, self.inside.is_some()),
+            ("mass_kg", self.mass_kg.is_some()),
+            ("mass_percent", self.mass_percent.is_some()),
+        ];
+        keys.into_iter().find(|(_, given)| *given).map(|(key, _)| key)
+    }
+
     pub(crate) fn given(&self, parameter: BodyParameter) -> GivenLaw<'_> {
         let vector = match parameter {
             BodyParameter::Mass => {

@@ -85,6 +85,8 @@ struct TestJson {
 #[derive(Serialize)]
 pub(crate) struct FragmentJson {
     body: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mass_kg: Option<f64>,
     inertia_kg_m2: [[f64; 3]; 3],
     /// Null where the roots are correlated.
     root_second_moment_variance_kg_m2: Option<[f64; 3]>,
@@ -104,6 +106,7 @@ impl FragmentJson {
     pub(crate) fn of(body: &str, fragment: &Fragment) -> Self {
         Self {
             body: body.to_owned(),
+            mass_kg: fragment.nominal_mass(),
             inertia_kg_m2: fragment.inertia(),
             root_second_moment_variance_kg_m2: fragment.root_variances(),
             root_second_moment_covariance_kg_m2: fragment.root_covariance(),
