@@ -1,6 +1,7 @@
 //! Tables of numbers that other programs wrote, a row for each run: Parquet, a folder of Parquet files, or CSV.
 
 mod models;
+mod no_runs;
 mod of_csv;
 mod of_folder;
 mod of_parquet;
@@ -16,6 +17,7 @@ use std::{
 };
 
 use models::Models;
+pub use no_runs::NoRunError;
 use of_csv::{CsvText, csv_columns, scan_csv};
 use of_folder::{Folder, NOT_REGULAR, PARQUET, has_parquet_name};
 use of_parquet::{parquet_columns, scan_parquet};

@@ -113,7 +113,9 @@ pub use folder::{
     told, told_runs, why_unknown,
 };
 pub use forecast::{Forecast, rough_size, rough_time};
-pub use foreign::{Columns, ForeignError, ForeignTable, OfModels, RowsError, TwiceError};
+pub use foreign::{
+    Columns, ForeignError, ForeignTable, NoRunError, OfModels, RowsError, TwiceError,
+};
 pub use format::{Extent, FormatError, TableFormat, TableWriter};
 pub use gyradius_statistics::Verdict;
 pub use hash::sha256;

@@ -10,6 +10,7 @@ mod formats;
 mod infinite;
 mod judged_tables;
 mod kept;
+mod no_runs;
 mod requirement;
 mod row_order;
 mod scratch;

@@ -424,3 +424,41 @@ fn a_status_is_ok_or_a_reason_or_refused() {
         }
     }
 }
+
+/// The same rows are no runs in Parquet, however the texts are stored; a first column that names models beside runs has any names.
+#[test]
+fn rows_that_are_no_runs_are_seen() {
+    let scratch = scratch();
+    let path = scratch.path().join("it.parquet");
+    const X: Stored<'_> = ("x", Physical::DOUBLE, ConvertedType::NONE, &["1", "2", "1.5"]);
+    for (physical, cells) in [
+        (Physical::BYTE_ARRAY, ["0", "1", "Mean"]),
+        (Physical::FIXED_LEN_BYTE_ARRAY, ["0000", "0001", "Mean"]),
+    ] {
+        let text = (physical, ConvertedType::NONE, &cells);
+        let found = |columns: &[Stored<'_>]| {
+            write(&path, columns);
+            judged(&path, "x <= 100 in 60 % at 80 %")
+        };
+        for (name, run_first) in [("run", true), ("Run", false), ("case", true), ("case", false)] {
+            let named: Stored<'_> = (name, text.0, text.1, text.2);
+            let found = found(&if run_first { [named, X] } else { [X, named] });
+            let is_seen = run_first || name == "Run";
+            assert_eq!(found.is_err(), is_seen, "{name} {run_first}: {found:?}");
+            if let Err(refused) = found {
+                let said = format!("row 3, column {name:?}: the row says \"Mean\"");
+                assert!(refused.contains(&said), "{refused}");
+            }
+        }
+        let model: Stored<'_> = ("model", text.0, text.1, text.2);
+        let run: Stored<'_> = ("run", Physical::INT32, ConvertedType::NONE, &["0", "1", "2"]);
+        assert_eq!(found(&[model, run, X]), Ok([3, 0]));
+        let run: Stored<'_> =
+            ("run", Physical::BYTE_ARRAY, ConvertedType::UTF8, &["0", "1", "last"]);
+        let refused = found(&[model, run, X]).unwrap_err();
+        assert!(
+            refused.contains("row 3, column \"run\": \"last\" is not the number of a run"),
+            "{refused}"
+        );
+    }
+}

@@ -1,5 +1,6 @@
 //! Tables: one body a row, under a header that names the six entries.
 
+use gyradius_statistics::SummaryNames;
 use std::collections::BTreeSet;
 
 use crate::{
@@ -8,7 +9,6 @@ use crate::{
     error::Refusal,
     gap::Gaps,
     products_comment::stated_products,
-    summary_row::is_summary,
     table_header::{BELOW, FIELDS, MASS, NAME, PRODUCTS, find_header},
     text::Text,
 };
@@ -19,6 +19,7 @@ pub(crate) fn read(text: &Text, default: Products) -> Result<(Vec<FileBody>, Gap
 
     let mut bodies = Vec::new();
     let mut things = BTreeSet::new();
+    let mut summaries = [SummaryNames::default(), SummaryNames::default()];
     while let Some(row) = rows.next() {
         let row = row.map_err(|error| error.of(text))?;
         let line = text.line(row.first().map_or(0, |field| field.start));
@@ -42,7 +43,11 @@ pub(crate) fn read(text: &Text, default: Products) -> Result<(Vec<FileBody>, Gap
         // In the column of names, or the first one, as of an index.
         let first = row.first().map(|field| field.of(text.as_str()));
         let labels = [cell(NAME).map(|(name, _)| name), first];
-        let summary = labels.into_iter().flatten().map(str::trim).find(|cell| is_summary(cell));
+        let labels = summaries.iter_mut().zip(labels);
+        let summary = labels.fold(None, |found, (names, cell)| {
+            let cell = cell.map(str::trim).filter(|cell| names.sums_up(cell));
+            found.or(cell)
+        });
         bodies.push(FileBody::new(name, line, reading).summing_up(summary));
     }
     let mut gaps = Gaps::default();

@@ -63,7 +63,6 @@ mod rows;
 mod same_robot;
 mod sdf_words;
 mod spread;
-mod summary_row;
 mod table_header;
 mod table_terms;
 mod ten_heading;

@@ -3,7 +3,7 @@
 use gyradius_statistics::StatisticsError;
 
 use crate::{
-    foreign::{ForeignError, RowsError, TwiceError},
+    foreign::{ForeignError, NoRunError, RowsError, TwiceError},
     runs_error::RunsError,
 };
 
@@ -20,6 +20,9 @@ pub enum JudgementError {
     /// A run stands twice in the table.
     #[error(transparent)]
     Twice(#[from] TwiceError),
+    /// A row of the table is no run.
+    #[error(transparent)]
+    NoRun(#[from] NoRunError),
     /// The runs cannot be read.
     #[error(transparent)]
     Runs(#[from] RunsError),

@@ -21,8 +21,8 @@ impl Judgement {
     /// no such column. All threads of the pool that this is called in are used.
     ///
     /// # Errors
-    /// The table cannot be read, has no such column, has no or too many rows, has the same run twice by its columns `model` and `run`, or
-    /// holds the rows of some runs only, as the folder of the campaign says that it is in.
+    /// The table cannot be read, has no such column, has no or too many rows, has the same run twice by its columns `model` and `run`, has a
+    /// row that sums up others or, in the column `run`, one without a number beside others with whole numbers, or holds the rows of some runs only, as the folder of the campaign says that it is in.
     pub fn of_table(
         requirements: &[Requirement],
         table: &ForeignTable,
@@ -30,6 +30,7 @@ impl Judgement {
         table.check_rows()?;
         table.twice()?.map_or(Ok(()), Err)?;
         table.check_files()?;
+        table.no_run()?.map_or(Ok(()), Err)?;
         let mut names: Vec<String> = Vec::new();
         for name in requirements.iter().flat_map(|requirement| requirement.quantity().columns()) {
             if !names.contains(name) {

@@ -1,7 +1,7 @@
 //! Rows of a list of parts that sum up others: counted as parts, they would be counted twice.
 
 use super::row::{PartNumbers, PartRow};
-use crate::summary_row::{is_summary, least_summed};
+use gyradius_statistics::{SummaryNames, least_summed};
 
 /// How far the numbers of a total may be from those of its parts, as they are rounded.
 const ROUNDED: f64 = 1e-3;
@@ -19,10 +19,11 @@ fn moments(numbers: &PartNumbers) -> Moments {
 pub(super) fn named(rows: &[PartRow]) -> Option<&PartRow> {
     let size = size(rows);
     let (mut parts, mut only_grow): (Vec<Moments>, bool) = (Vec::new(), true);
+    let mut names = SummaryNames::default();
     for (row, numbers) in rows.iter().filter_map(|row| Some((row, row.numbers()?))) {
         let found = moments(numbers);
         let is_sum = |least| is_sum(&parts, least, found, size, only_grow);
-        if is_summary(row.name()) || least_summed(row.name()).is_some_and(is_sum) {
+        if names.sums_up(row.name()) || least_summed(row.name()).is_some_and(is_sum) {
             return Some(row);
         }
         only_grow &= found[0] >= 0.0;
