@@ -78,7 +78,10 @@ fn the_joint_law_stands_beside_the_fit_of_today() {
         row[1..4].iter_mut().for_each(|x| *x *= 1e3);
         row
     });
-    write("units.csv", &table("Mass [g],Cx (mm),Cy (mm),Cz (mm),ixx,iyy,izz,ixy,ixz,iyz", other));
+    write(
+        "units.csv",
+        &table("Mass [g],Cx (mm),Cy (mm),Cz (mm),ixx_kg_m2,iyy,izz,ixy,ixz,iyz", other),
+    );
 
     let (code, text, _) = run(&folder, &["fit", "ten.csv"]);
     let (known, today, _) = run(&folder, &["fit", "alone/ten.csv"]);

@@ -38,7 +38,8 @@ pub(crate) fn read(text: &Text, default: Products) -> Result<(Vec<FileBody>, Gap
             let (found, allowed) = (row.len(), header.row.len());
             Err(FileBodyError::Count { field: "the row", found, allowed })
         };
-        let reading = reading.map(|reading| reading.in_units(header.mass_kg, header.inertia_kg_m2));
+        let reading =
+            reading.map(|reading| reading.in_units(header.mass.si(), header.inertia.si()));
         things.extend(header.things(text, &row));
         // In the column of names, or the first one, as of an index.
         let first = row.first().map(|field| field.of(text.as_str()));
@@ -150,7 +151,7 @@ mod tests {
         for (heading, mass, inertia) in [
             ("mass [g],Ixx [g*mm^2],iyy,izz", 1e-3, 1e-9),
             ("mass (lb),Ixx (lb in²),Iyy (lb·in2),Izz (lb in^2)", 0.45359237, 2.926396534292e-4),
-            ("mass,Ixx (slug ft2),iyy,izz", 1.0, 1.3558179483314),
+            ("mass [kg],Ixx (slug ft2),iyy,izz", 1.0, 1.3558179483314),
             ("m [t],ixx [t cm2],iyy,izz", 1e3, 0.1),
         ] {
             let bodies = try_read(&format!("{heading}\n2,3,4,5")).unwrap();

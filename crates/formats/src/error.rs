@@ -165,6 +165,26 @@ pub enum FileProblem {
         /// The heading, shortened.
         heading: String,
     },
+    /// A column of a number states no unit, and another states one that is not of SI.
+    #[error(
+        "column {heading:?} states no unit, and column {other:?} states one that is not of SI: both must state theirs, in the heading or in \
+         a row below the header"
+    )]
+    NoUnit {
+        /// The heading without a unit, shortened.
+        heading: String,
+        /// The heading with one, shortened.
+        other: String,
+    },
+    /// A line above the header states units that are not of SI, and some column states none.
+    #[error(
+        "{said:?} speaks of units other than those of SI, which are read from the headings of columns, or a row below them, alone: there each \
+         column of masses, lengths or inertias must state its own"
+    )]
+    TitleUnits {
+        /// The line, shortened.
+        said: String,
+    },
     /// Its grammar is broken.
     #[error("malformed: {message}")]
     Malformed {

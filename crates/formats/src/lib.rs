@@ -69,6 +69,7 @@ mod ten_heading;
 mod ten_moments;
 mod ten_table;
 mod text;
+mod title_units;
 mod unit_words;
 mod units;
 mod walk;

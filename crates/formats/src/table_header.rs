@@ -12,6 +12,7 @@ use crate::{
     table_terms::{InertiaPoint, TableTerms},
     ten_heading::{TenCentre, TenHeading},
     text::Text,
+    title_units,
     unit_words::speaks_of_a_unit,
     units::{BadUnit, Dimension, SharedUnit, Unit, UnitProblem, longest_name, squeezed},
 };
@@ -78,8 +79,8 @@ pub(crate) struct Header {
     pub(crate) row: Vec<Field>,
     /// The column of each of [`FIELDS`].
     pub(crate) columns: [Option<usize>; FIELDS.len()],
-    pub(crate) mass_kg: f64,
-    pub(crate) inertia_kg_m2: f64,
+    pub(crate) mass: SharedUnit,
+    pub(crate) inertia: SharedUnit,
     /// The row of units below it, if there is one.
     pub(crate) units: Option<Vec<Field>>,
     /// Columns that would change the inertia of a row, and are not read.
@@ -219,8 +220,7 @@ fn header(text: &Text, row: &[Field], below: Option<&[Field]>) -> Result<Option<
     let row_below = below;
     let below = below.and_then(|row| units_below(text, &of_fields, row));
     let mut columns = [None; FIELDS.len()];
-    let mut of_inertia = SharedUnit::default();
-    let mut mass_kg = 1.0;
+    let (mut mass, mut inertia) = (SharedUnit::default(), SharedUnit::default());
     for (index, (field, found)) in row.iter().zip(headings).enumerate() {
         let Some((column, in_heading)) = found else { continue };
         let name = FIELDS[column];
@@ -238,12 +238,12 @@ fn header(text: &Text, row: &[Field], below: Option<&[Field]>) -> Result<Option<
         if columns[column].replace(index).is_some() && column != NAME {
             return Err(refuse(format!("two columns for {name}")));
         }
-        if column == MASS {
-            mass_kg = its_unit.si;
-        }
-        if column < MASS {
-            of_inertia.with(name, its_unit).map_err(refuse)?;
-        }
+        let shared = match column {
+            0..MASS => &mut inertia,
+            MASS => &mut mass,
+            NAME.. => continue,
+        };
+        shared.with(name, heading, its_unit).map_err(refuse)?;
     }
     let count = |of: std::ops::Range<usize>| columns[of].iter().flatten().count();
     let (products, below_diagonal) = (count(3..BELOW), count(BELOW..MASS));
@@ -265,8 +265,11 @@ fn header(text: &Text, row: &[Field], below: Option<&[Field]>) -> Result<Option<
         let at = row.first().map_or(0, |field| field.start);
         return Err(text.malformed(at, "columns iyx, izx, izy: there must be all three or none"));
     }
+    if let Some((heading, other)) = SharedUnit::lacking(&[&mass, &inertia]) {
+        let at = row.first().map_or(0, |field| field.start);
+        return Err(text.refuse(at, FileProblem::NoUnit { heading, other }));
+    }
     let units = below.and(row_below).map(<[Field]>::to_vec);
-    let inertia_kg_m2 = of_inertia.si();
     let is_read = |at: usize| columns.contains(&Some(at));
     let others = row.iter().enumerate().filter(|(at, _)| !is_read(*at));
     let others: Vec<(usize, &str)> =
@@ -276,9 +279,9 @@ fn header(text: &Text, row: &[Field], below: Option<&[Field]>) -> Result<Option<
     let below = |at: usize| Some(*units.as_ref()?.get(at)?);
     let centre = others.iter().filter_map(|(at, heading)| Some((*at, TenHeading::of(heading)?)));
     let centre = centre.filter_map(|(at, heading)| CentreColumn::of(text, heading, below(at)));
-    let terms = terms(mass_kg, inertia_kg_m2, columns[MASS].is_some(), &centre.collect::<Vec<_>>());
-    let header =
-        Header { row: row.to_vec(), columns, mass_kg, inertia_kg_m2, units, unread, terms };
+    let terms =
+        terms(mass.si(), inertia.si(), columns[MASS].is_some(), &centre.collect::<Vec<_>>());
+    let header = Header { row: row.to_vec(), columns, mass, inertia, units, unread, terms };
     let units = header.units.as_deref().unwrap_or_default();
     match header.problem(text, units, Unread::problem_in_units) {
         Some((field, error)) => Err(text.malformed(field.start, error)),
@@ -343,6 +346,8 @@ pub(crate) fn find_header(text: &Text) -> Result<(Header, Rows<'_>), Refusal> {
     let headers = |comments| headers(text.as_str(), comments);
     for (at, line) in headers(false) {
         if let Some(found) = header_at(text, at, line)? {
+            let some_lack = found.0.mass.is_lacking() || found.0.inertia.is_lacking();
+            title_units::refused(text, at, some_lack)?;
             return Ok(found);
         }
     }

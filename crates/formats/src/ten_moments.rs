@@ -172,6 +172,7 @@ impl Columns {
             columns.add(at, text, heading, Ok(Unit::none()))?;
         }
         let places = columns.places(0..10)?;
+        columns.check_units(&[])?;
         let place = |i: usize| (places[i], columns.unit(i));
         Ok(Self { places: std::array::from_fn(place), centre: columns.centre() })
     }

@@ -12,6 +12,7 @@ use crate::{
     table_header::{Header, MASS, find_header, one_unit, unit_below},
     ten_heading::{TenCentre, TenHeading, field},
     text::Text,
+    title_units,
     units::{BadUnit, SharedUnit, Unit},
 };
 
@@ -20,7 +21,7 @@ use crate::{
 /// ```
 /// use gyradius_formats::{InertiaFile, Products, TenCentre, TenTable};
 ///
-/// let table = "mass_kg,cx_mm,cy_mm,cz_mm,ixx,iyy,izz,time\n2,0,0,100,0.1,0.1,0.1,7\n";
+/// let table = "mass_kg,cx_mm,cy_mm,cz_mm,ixx_kg_m2,iyy,izz,time\n2,0,0,100,0.1,0.1,0.1,7\n";
 /// let file = InertiaFile::parse("bodies.csv".as_ref(), table.into(), Products::TensorEntries)?;
 /// let table = TenTable::of(&file)?;
 /// assert_eq!(table.centre(), Some(TenCentre::MassCentre));
@@ -215,6 +216,9 @@ impl Centre {
             columns.add(at, name(at), heading, below)?;
         }
         let places = columns.places(1..4)?;
+        columns.check_units(&[&header.mass, &header.inertia])?;
+        let start = header.row.first().map_or(0, |field| field.start);
+        title_units::refused(text, start, columns.units[1].is_lacking())?;
         Ok(Some(Self { kind, places: [places[0], places[1], places[2]], unit: columns.unit(1) }))
     }
 }
@@ -259,11 +263,22 @@ impl TenColumns {
         let unit = one_unit(heading.unit.map_err(bad)?, below.map_err(bad)?);
         let malformed = |message| TenTableError::File(FileProblem::Malformed { message });
         let shared = &mut self.units[which(place)];
-        shared.with(field, unit.map_err(malformed)?).map_err(malformed)?;
+        shared.with(field, name, unit.map_err(malformed)?).map_err(malformed)?;
         if let Some((_, first)) = self.found[place].replace((at, shortened(name))) {
             return Err(TenTableError::Twice { field, first, second: shortened(name) });
         }
         Ok(())
+    }
+
+    /// That none of its units is unknown beside those of other columns and its own.
+    pub(crate) fn check_units(&self, beside: &[&SharedUnit]) -> Result<(), TenTableError> {
+        let all: Vec<&SharedUnit> = beside.iter().copied().chain(&self.units).collect();
+        match SharedUnit::lacking(&all) {
+            Some((heading, other)) => {
+                Err(TenTableError::File(FileProblem::NoUnit { heading, other }))
+            }
+            None => Ok(()),
+        }
     }
 
     /// What the three after the mass are; nothing if none of them is there.

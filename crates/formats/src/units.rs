@@ -67,25 +67,59 @@ impl Unit {
 }
 
 /// The unit of some columns that are in one: of those that state none too.
-#[derive(Debug, Default)]
-pub(crate) struct SharedUnit(Option<(&'static str, Unit)>);
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SharedUnit {
+    /// The heading of the first column.
+    first: Option<String>,
+    stated: Option<Stated>,
+}
+
+/// What the first column says that states a unit.
+#[derive(Clone, Debug)]
+struct Stated {
+    name: &'static str,
+    heading: String,
+    unit: Unit,
+}
 
 impl SharedUnit {
     /// With what the column of a number states; why not, if another states another.
-    pub(crate) fn with(&mut self, name: &'static str, stated: Unit) -> Result<(), String> {
-        if stated.text.is_empty() {
+    pub(crate) fn with(
+        &mut self,
+        name: &'static str,
+        heading: &str,
+        unit: Unit,
+    ) -> Result<(), String> {
+        self.first.get_or_insert_with(|| shortened(heading));
+        if unit.text.is_empty() {
             return Ok(());
         }
-        let (first, known) = self.0.get_or_insert_with(|| (name, stated.clone()));
-        if known.si == stated.si {
+        let stated = || Stated { name, heading: shortened(heading), unit: unit.clone() };
+        let first = self.stated.get_or_insert_with(stated);
+        if first.unit.si == unit.si {
             return Ok(());
         }
-        let (known, stated) = (&known.text, stated.text);
+        let (known, first, stated) = (&first.unit.text, first.name, unit.text);
         Err(format!("{first} is in {known} but {name} in {stated}: one unit for all"))
     }
 
     pub(crate) fn si(&self) -> f64 {
-        self.0.as_ref().map_or(1.0, |(_, unit)| unit.si)
+        self.stated.as_ref().map_or(1.0, |stated| stated.unit.si)
+    }
+
+    /// Whether there are columns, and none states a unit.
+    pub(crate) fn is_lacking(&self) -> bool {
+        self.first.is_some() && self.stated.is_none()
+    }
+
+    /// The headings of a column that states no unit, nor any other that is in one with it, and of one that states another than that of SI, if
+    /// there are both: nobody knows then whether the first is in SI.
+    pub(crate) fn lacking(all: &[&Self]) -> Option<(String, String)> {
+        let is_other = |stated: &&Stated| stated.unit.si != 1.0;
+        let other = all.iter().find_map(|one| one.stated.as_ref().filter(is_other))?;
+        let lacking = all.iter().filter(|one| one.stated.is_none());
+        let heading = lacking.filter_map(|one| one.first.clone()).next()?;
+        Some((heading, other.heading.clone()))
     }
 }
 

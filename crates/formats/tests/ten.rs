@@ -98,12 +98,12 @@ fn columns() -> impl Strategy<Value = Columns> {
         prop::array::uniform3(0..4_usize),
         prop::array::uniform10(any::<bool>()),
     )
-        .prop_map(|(centre, order, spelling, units, silent)| Columns {
-            centre,
-            order,
-            spelling,
-            units,
-            silent,
+        .prop_map(|(centre, order, spelling, mut units, silent)| {
+            // Beside a unit, each kind states its own: beside one that is not of SI, it must.
+            if units != [0; 3] {
+                units = units.map(|unit| unit.max(1));
+            }
+            Columns { centre, order, spelling, units, silent }
         })
 }
 

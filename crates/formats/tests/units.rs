@@ -139,11 +139,11 @@ fn every_unit_of_inertia_is_read_as_it_is_written_in_lists_of_parts() {
     const NAMES: [&str; 6] = ["Ixx", "iyy", "izz", "sigma_ixx", "Iyy sigma", "sigma_products"];
     let parts = |spellings: [&Spelling; 6]| {
         let names: [String; 6] = std::array::from_fn(|i| spellings[i].after(NAMES[i]));
-        format!("name,mass,cx,cy,cz,{}\na,1,0,0,0,1,1,1,1,1,1\n", names.join(","))
+        format!("name,mass_kg,cx_m,cy_m,cz_m,{}\na,1,0,0,0,1,1,1,1,1,1\n", names.join(","))
     };
     let ten_columns = |spellings: [&Spelling; 3]| {
         let names: [String; 3] = std::array::from_fn(|i| spellings[i].after(NAMES[i]));
-        format!("mass,cx,cy,cz,{}\n1,0,0,0,1,1,1\n", names.join(","))
+        format!("mass_kg,cx_m,cy_m,cz_m,{}\n1,0,0,0,1,1,1\n", names.join(","))
     };
     let [clear, ambiguous] = spellings();
     for spellings in side_by_side::<6>(&clear) {
@@ -177,7 +177,7 @@ fn every_unit_of_inertia_is_read_as_it_is_written_in_lists_of_parts() {
 fn units_of_mass_and_length_are_read_after_every_mark() {
     for (before, after) in AROUND {
         for (mass, kg) in MASSES {
-            let table = format!("mass{before}{mass}{after},ixx,iyy,izz\n1,1,1,1\n");
+            let table = format!("mass{before}{mass}{after},ixx [kg m2],iyy,izz\n1,1,1,1\n");
             let file = checked(table.as_bytes()).unwrap();
             assert!(is_near(file.bodies()[0].mass_kg().unwrap(), kg), "{table}");
             for (length, m) in LENGTHS {
@@ -194,6 +194,47 @@ fn units_of_mass_and_length_are_read_after_every_mark() {
                 assert!(is_near(part.mass_centre_m()[0], m) && is_near(sigma_z, m), "{table}");
             }
         }
+    }
+}
+
+/// Mass, mass centre and inertia, each in a unit of SI, in another or in none that is stated, beside titles that speak of units or not: where one
+/// says that it is not in SI, none is read without a unit.
+#[test]
+fn a_kind_of_number_without_a_unit_is_never_guessed_beside_another() {
+    const UNITS: [[&str; 3]; 3] =
+        [["", "_kg", " (lb)"], ["", "_m", " (in)"], ["", " [kg m2]", " [lb in2]"]];
+    let headings = |pick: [usize; 3], all: bool| {
+        let unit = |kind: usize, is_first: bool| {
+            // One unit holds for the columns of a kind that state none.
+            UNITS[kind][if is_first || all { pick[kind] } else { 0 }]
+        };
+        let (m, [cx, c], [ixx, i]) =
+            (unit(0, true), [unit(1, true), unit(1, false)], [unit(2, true), unit(2, false)]);
+        format!("name,mass{m},Cx{cx},Cy{c},Cz{c},Ixx{ixx},Iyy{i},Izz{i}\na,1,2,3,4,5,6,7\n")
+    };
+    let picks = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9]);
+    for (pick, title) in picks.flat_map(|pick| {
+        ["", "Table 3\n", "All units: lb, in, lb-in2\n", "# units = mm\n"].map(|t| (pick, t))
+    }) {
+        let lacks = |of: &[usize]| {
+            let mixed = of.iter().any(|i| pick[*i] == 0) && of.iter().any(|i| pick[*i] == 2);
+            mixed || title.contains("units") && of.iter().any(|i| pick[*i] == 0)
+        };
+        for all in [true, false] {
+            let table = format!("{title}{}", headings(pick, all));
+            // `check` reads no mass centre.
+            let found = checked(table.as_bytes()).map_err(|error| error.to_string());
+            assert_eq!(found.is_err(), lacks(&[0, 2]), "{table}{found:?}");
+            let fitted = ten(table.as_bytes()).map_err(|error| error.to_string());
+            assert_eq!(fitted.is_err(), lacks(&[0, 1, 2]), "{table}{fitted:?}");
+            for message in [found.err(), fitted.err()].into_iter().flatten() {
+                let said = ["states no unit, and column", "speaks of units other than"];
+                assert!(said.iter().any(|said| message.contains(said)), "{message}");
+            }
+        }
+        let table = format!("{title}{}", headings(pick, true));
+        let list = PartsTable::read(table.as_bytes(), None).map_err(|error| error.to_string());
+        assert_eq!(list.is_err(), lacks(&[0, 1, 2]), "{table}{list:?}");
     }
 }
 

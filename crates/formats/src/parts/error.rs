@@ -183,17 +183,6 @@ pub enum PartsProblem {
     /// A column of a number whose unit is not read.
     #[error(transparent)]
     Unit(#[from] Box<UnitError>),
-    /// A column of a number states no unit, and another of its kind states one that is not of SI.
-    #[error(
-        "column {heading:?} states no unit, and column {other:?} states one that is not of SI: both must \
-         state theirs"
-    )]
-    NoUnit {
-        /// The heading without a unit.
-        heading: String,
-        /// The heading with one.
-        other: String,
-    },
     /// A number is missing, none, or not finite, the row has too many or too few, or a cell that is not read would change them.
     #[error(transparent)]
     Number(#[from] FileBodyError),

@@ -166,13 +166,13 @@ impl Heading {
         }
     }
 
-    /// The first among some columns of its kind in a unit that is not of SI, if this one is a number that states no unit: nobody knows
-    /// then whether it is in that unit or in SI.
+    /// The first among some columns of numbers in a unit that is not of SI, if this one is a number that states no unit: nobody knows
+    /// then whether it is in SI. Columns of other kinds count, too: beside lb and in, an inertia may be in lb·in².
     pub(crate) fn unit_it_lacks(&self, beside: &[Self]) -> Option<usize> {
-        let (dimension, None) = self.dimension()? else { return None };
+        let (_, None) = self.dimension()? else { return None };
         let is_in_other = |other: &Self| {
-            let stated = other.dimension();
-            stated.is_some_and(|(of, unit)| of == dimension && unit.is_some_and(|si| si != 1.0))
+            let stated = other.dimension().and_then(|(_, unit)| unit);
+            stated.is_some_and(|si| si != 1.0)
         };
         beside.iter().position(is_in_other)
     }

@@ -21,6 +21,7 @@ use crate::{
     rows::{Field, NOT_KNOWN, Rows, headers, without_marks},
     table_terms::{InertiaPoint, TableTerms},
     text::Text,
+    title_units,
     units::{Unit, squeezed},
 };
 use heading::{Column, Heading};
@@ -130,9 +131,10 @@ impl PartsTable {
 
     fn rows_of(bytes: &[u8], products: Option<Products>) -> Result<Raw, PartsError> {
         let text = Text::new(bytes, true)?;
-        let Some(Header { line, headings, units, mut rows }) = header(&text)? else {
+        let Some(Header { start, headings, units, mut rows }) = header(&text)? else {
             return Err(Refusal::from(FileProblem::Empty).into());
         };
+        let line = text.line(start);
         let columns = headings.iter().map(|heading| Heading::of(heading));
         let mut columns: Vec<Heading> = columns.collect();
         if !columns.contains(&Heading::Column(Column::Shape)) {
@@ -159,7 +161,7 @@ impl PartsTable {
             }
             if let Some(other) = column.unit_it_lacks(&columns) {
                 let (heading, other) = (shortened(heading), shortened(&headings[other]));
-                return refuse(PartsProblem::NoUnit { heading, other });
+                return refuse(PartsProblem::File(FileProblem::NoUnit { heading, other }));
             }
             match column {
                 Heading::Signed => {
@@ -186,6 +188,8 @@ impl PartsTable {
                 }
             }
         }
+        let lacks = |column: &Heading| matches!(column.dimension(), Some((_, None)));
+        title_units::refused(&text, start, columns.iter().any(lacks))?;
         let has = |wanted: Column| columns.contains(&Heading::Column(wanted));
         let has_mass = columns.iter().any(|c| matches!(c, Heading::Column(Column::Value(0, _))));
         for (there, column) in [(has(Column::Name), "name or id"), (has_mass, "mass")] {
@@ -327,9 +331,9 @@ impl Edges {
     }
 }
 
-/// The header of a list of parts, and what stands below it.
+/// The header of a list of parts with its offset, and what stands below it.
 struct Header<'a> {
-    line: usize,
+    start: usize,
     /// With the units of the row below.
     headings: Vec<String>,
     /// Line and cells of that row, if there is one.
@@ -377,7 +381,8 @@ fn header(text: &Text) -> Result<Option<Header<'_>>, PartsError> {
             (headings, units, rows) = (with_units, Some((line, row)), below);
         }
     }
-    Ok(Some(Header { line: line_of(text, &first), headings, units, rows }))
+    let start = first.first().map_or(0, |field| field.start);
+    Ok(Some(Header { start, headings, units, rows }))
 }
 
 /// The headings with the units of the row below them, if it is a row of units: it has one for a number, and no number.

@@ -210,7 +210,7 @@ proptest! {
     ) {
         let [kx, ky, kz] = names;
         let [a, b, c] = radii;
-        let text = format!("name,mass,Cx [{unit}],Cy [{unit}],Cz [{unit}],{kx} [{unit}],{ky} [{unit}],{kz} [{unit}]\nit,{mass},0,0,0,{a},{b},{c}\n");
+        let text = format!("name,mass_kg,Cx [{unit}],Cy [{unit}],Cz [{unit}],{kx} [{unit}],{ky} [{unit}],{kz} [{unit}]\nit,{mass},0,0,0,{a},{b},{c}\n");
         let table = read(&text).unwrap_or_else(|error| panic!("{text}{error}"));
         let numbers = table.rows()[0].numbers().unwrap();
         for (found, radius) in numbers.inertia().entries().into_iter().zip(radii) {

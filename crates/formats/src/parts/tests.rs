@@ -140,21 +140,21 @@ fn what_a_row_lacks_is_named() {
         ),
         (
             "name,mass,cx,cy,cz,shape,radius,height_mm\na,1,0,0,0,cylinder,1,2\n",
-            "line 1: column \"cx\" states no unit, and column \"height_mm\" states one",
+            "line 1: column \"mass\" states no unit, and column \"height_mm\" states one",
         ),
         (
-            "name,mass,cx [m],cy [m],cz [m],shape,radius_m,Radius [mm]\na,1,0,0,0,disc,1,2\n",
+            "name,mass_kg,cx [m],cy [m],cz [m],shape,radius_m,Radius [mm]\na,1,0,0,0,disc,1,2\n",
             "line 1: columns \"radius_m\" and \"Radius [mm]\" say the same",
         ),
         ("name,mass,cx,cy,cz\na,1,0,0,0\n", "line 2: a: there is no inertia"),
         ("name,mass,cx,cy,cz\na,1,0,0\n", "line 2: the row has 4 values: there must be 5"),
         ("name,mass,cx,cy,cz\n", "line 1: no row stands below the header"),
         (
-            "name,mass (lb),\"cx (\"\")\",cy,cz\na,1,0,0,0\n",
+            "name,mass,\"cx (\"\")\",cy,cz\na,1,0,0,0\n",
             r#"line 1: column "cx (\")": centre_x is in "\"": it must be in m"#,
         ),
         (
-            "name,mass (lb),cx,cy,cz\n,lb,\"\"\"\",m,m\na,1,0,0,0\n",
+            "name,mass (kg),cx,cy,cz\n,kg,\"\"\"\",m,m\na,1,0,0,0\n",
             r#"line 1: column "cx [\"]": centre_x is in "\"": it must be in m"#,
         ),
         ("name,MASS [MG],cx,cy,cz\na,1,0,0,0\n", r#"line 1: column "MASS [MG]": mass is in "MG""#),
