@@ -2,6 +2,7 @@
 
 mod error;
 pub(crate) mod heading;
+mod last_place;
 mod row;
 mod row_shape;
 mod totals;

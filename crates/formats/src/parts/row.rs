@@ -5,6 +5,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::error::{PartsError, PartsFile, PartsProblem};
 use super::heading::{self, Column, GYRATION, Group, Heading, Scale, VALUES};
+use super::last_place::half_of_last_place;
 use super::unread::Unread;
 use crate::{
     FileBodyError, Products,
@@ -76,6 +77,7 @@ pub struct PartNumbers {
     attitude: UnitQuaternion<f64>,
     deviations: [f64; 10],
     inertia_follows_mass: bool,
+    half_places: [f64; 4],
 }
 
 impl PartNumbers {
@@ -107,6 +109,11 @@ impl PartNumbers {
     #[must_use]
     pub fn deviations(&self) -> [f64; 10] {
         self.deviations
+    }
+
+    /// How far mass (kg) and mass centre (m) may be from what the list shows of them, if they were rounded to their digits.
+    pub(super) fn half_places(&self) -> [f64; 4] {
+        self.half_places
     }
 
     /// Whether the inertia is proportional to the mass: that of a shape or of radii of gyration is, unless the row says no.
@@ -231,7 +238,7 @@ impl Cells<'_> {
             return Ok(None);
         }
         let sign = self.sign()?;
-        let mut values = [None; 10];
+        let (mut values, mut half_places) = ([None; 10], [0.0; 4]);
         let of = |heading: &Heading| match heading {
             Heading::Column(Column::Value(i, unit)) => Some((*i, unit.unwrap_or(1.0))),
             _ => None,
@@ -241,6 +248,9 @@ impl Cells<'_> {
                 return Err(PartsProblem::Twice { field: VALUES[i] });
             }
             values[i] = Some(Number::parse(VALUES[i], cell, None)?.value * si);
+            if let Some(half) = half_places.get_mut(i) {
+                *half = half_of_last_place(cell) * si;
+            }
         }
         for i in 0..4 {
             if values[i].is_none() {
@@ -271,6 +281,7 @@ impl Cells<'_> {
             attitude: self.attitude()?,
             deviations: self.deviations(&nominal)?,
             inertia_follows_mass,
+            half_places,
         }))
     }
 

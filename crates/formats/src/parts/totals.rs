@@ -1,32 +1,120 @@
 //! Rows of a list of parts that sum up others: counted as parts, they would be counted twice.
 
-use super::row::{PartNumbers, PartRow};
 use gyradius_statistics::{SummaryNames, least_summed};
 
-/// How far the numbers of a total may be from those of its parts, as they are rounded.
+use super::row::{PartNumbers, PartRow};
+
+/// How far the numbers of a total may be from those of its parts, whatever their digits.
 const ROUNDED: f64 = 1e-3;
 
-/// Mass and first moments.
-type Moments = [f64; 4];
+/// How far rounding may move a mass, at most, and, in sizes of the whole, a coordinate: one that is written in few digits may have no more.
+const MOST_ROUNDED: [f64; 2] = [0.01, 0.02];
 
-fn moments(numbers: &PartNumbers) -> Moments {
-    let mass = numbers.mass_kg();
-    let [x, y, z] = numbers.mass_centre_m().map(|x| x * mass);
-    [mass, x, y, z]
+/// What a row weighs and where, and how far both may be from that if they were rounded to the digits that stand there.
+#[derive(Clone, Copy, Debug)]
+struct Weight {
+    mass: f64,
+    centre: [f64; 3],
+    mass_off: f64,
+    centre_off: [f64; 3],
+    speaks_of_a_sum: bool,
+}
+
+impl Weight {
+    /// `size` is the greatest coordinate of a mass centre, m.
+    fn of(row: &PartRow, numbers: &PartNumbers, size: f64) -> Self {
+        let (mass, [half, halves @ ..]) = (numbers.mass_kg(), numbers.half_places());
+        Self {
+            mass,
+            centre: numbers.mass_centre_m(),
+            mass_off: half.min(MOST_ROUNDED[0] * mass.abs()),
+            centre_off: halves.map(|half| half.min(MOST_ROUNDED[1] * size)),
+            speaks_of_a_sum: least_summed(row.name()).is_some(),
+        }
+    }
+}
+
+/// Some rows together.
+#[derive(Clone, Debug, Default)]
+struct Sum {
+    count: usize,
+    mass: f64,
+    first_moments: [f64; 3],
+    /// The squares of how far the masses may be off, and these times the coordinate and its square.
+    mass_squares: f64,
+    first_squares: [f64; 3],
+    second_squares: [f64; 3],
+    /// The squares of how far the first moments may be off as the coordinates are.
+    centre_squares: [f64; 3],
+    has_sums: bool,
+}
+
+impl Sum {
+    fn of<'a>(rows: impl IntoIterator<Item = &'a Weight>) -> Self {
+        let mut sum = Self::default();
+        rows.into_iter().for_each(|row| sum.add(row));
+        sum
+    }
+
+    fn add(&mut self, row: &Weight) {
+        self.count += 1;
+        self.mass += row.mass;
+        let square = row.mass_off * row.mass_off;
+        self.mass_squares += square;
+        for axis in 0..3 {
+            let (x, off) = (row.centre[axis], row.mass * row.centre_off[axis]);
+            self.first_moments[axis] += row.mass * x;
+            self.first_squares[axis] += square * x;
+            self.second_squares[axis] += square * x * x;
+            self.centre_squares[axis] += off * off;
+        }
+        self.has_sums |= row.speaks_of_a_sum;
+    }
+
+    /// Whether a row has the mass of these, to rounding: each is off by an even law.
+    fn has_mass(&self, row: &Weight) -> bool {
+        let off = row.mass_off + three_sigma(self.mass_squares);
+        row.mass > 0.0 && (self.mass - row.mass).abs() <= off.max(ROUNDED * row.mass)
+    }
+
+    /// The same with the mass centre.
+    fn is_same(&self, row: &Weight, size: f64) -> bool {
+        let is_near = |axis: usize| {
+            let x = row.centre[axis];
+            let of_masses = self.second_squares[axis] - 2.0 * x * self.first_squares[axis]
+                + x * x * self.mass_squares;
+            let off = self.mass * row.centre_off[axis]
+                + three_sigma(self.centre_squares[axis] + of_masses.max(0.0));
+            let apart = (self.first_moments[axis] - self.mass * x).abs();
+            apart <= off.max(ROUNDED * row.mass * size)
+        };
+        self.has_mass(row) && (0..3).all(is_near)
+    }
+
+    /// Whether it weighs more than a row, and will if masses are added to it.
+    fn is_heavier(&self, row: &Weight) -> bool {
+        let off = row.mass_off + three_sigma(self.mass_squares) + ROUNDED * row.mass;
+        self.mass - row.mass > off
+    }
+}
+
+/// Three standard deviations of a sum of numbers that are off by an even law, of the squares of how far each may be.
+fn three_sigma(squares: f64) -> f64 {
+    (3.0 * squares).sqrt()
 }
 
 /// The first row with numbers whose name says that it sums up others, or speaks of a sum and has that of rows above it.
 pub(super) fn named(rows: &[PartRow]) -> Option<&PartRow> {
     let size = size(rows);
-    let (mut parts, mut only_grow): (Vec<Moments>, bool) = (Vec::new(), true);
+    let (mut parts, mut only_grow): (Vec<Weight>, bool) = (Vec::new(), true);
     let mut names = SummaryNames::default();
     for (row, numbers) in rows.iter().filter_map(|row| Some((row, row.numbers()?))) {
-        let found = moments(numbers);
-        let is_sum = |least| is_sum(&parts, least, found, size, only_grow);
+        let found = Weight::of(row, numbers, size);
+        let is_sum = |least| is_sum(&parts, least, &found, size, only_grow);
         if names.sums_up(row.name()) || least_summed(row.name()).is_some_and(is_sum) {
             return Some(row);
         }
-        only_grow &= found[0] >= 0.0;
+        only_grow &= found.mass >= 0.0;
         parts.push(found);
     }
     None
@@ -35,44 +123,39 @@ pub(super) fn named(rows: &[PartRow]) -> Option<&PartRow> {
 /// Rows that have mass and mass centre of all rows above them together, but for such rows, or, the first one, of all below it.
 pub(super) fn like_totals(rows: &[PartRow]) -> Vec<&PartRow> {
     let size = size(rows);
-    let all: Vec<(&PartRow, Moments)> =
-        rows.iter().filter_map(|row| Some((row, moments(row.numbers()?)))).collect();
-    let mut found = Vec::new();
-    let mut above: (Moments, usize) = ([0.0; 4], 0);
+    let with_weight = |row| Some((row, Weight::of(row, row.numbers()?, size)));
+    let all: Vec<(&PartRow, Weight)> = rows.iter().filter_map(with_weight).collect();
+    let (mut found, mut above) = (Vec::new(), Sum::default());
     for (at, (row, own)) in all.iter().enumerate() {
-        let rest =
-            |of: &[(&PartRow, Moments)]| of.iter().fold([0.0; 4], |sum, (_, one)| plus(sum, *one));
-        let of_all = at == 0 && all.len() > 2 && is_same(rest(&all[1..]), *own, size);
-        if of_all || above.1 >= 2 && is_same(above.0, *own, size) {
+        let below = || Sum::of(all[1..].iter().map(|(_, weight)| weight));
+        let of_all = at == 0 && all.len() > 2 && below().is_same(own, size);
+        if of_all || above.count >= 2 && above.is_same(own, size) {
             found.push(*row);
         } else {
-            above = (plus(above.0, *own), above.1 + 1);
+            above.add(own);
         }
     }
     found
 }
 
-/// Whether it is the sum of so many or more of the last ones. `only_grow` says that no mass is negative: nothing above rows that weigh
-/// more already makes the sum less, and lists of 60,000 parts whose names speak of a mass are not summed up once for each part.
-fn is_sum(parts: &[Moments], least: usize, of: Moments, size: f64, only_grow: bool) -> bool {
-    let mut sum = [0.0; 4];
-    let sums = parts.iter().rev().zip(1..).map(|(one, count)| {
-        sum = plus(sum, *one);
-        (sum, count)
-    });
-    let is_heavier = |sum: &Moments| only_grow && sum[0] > (1.0 + 2.0 * ROUNDED) * of[0];
-    sums.take_while(|(sum, _)| !is_heavier(sum))
-        .any(|(sum, count)| count >= least && is_same(sum, of, size))
-}
-
-fn plus(a: Moments, b: Moments) -> Moments {
-    std::array::from_fn(|i| a[i] + b[i])
-}
-
-/// To rounding: of the mass, and of the mass at the greatest distance.
-fn is_same(sum: Moments, total: Moments, size: f64) -> bool {
-    let near = |i: usize, of: f64| (sum[i] - total[i]).abs() <= ROUNDED * of;
-    total[0] > 0.0 && near(0, total[0]) && (1..4).all(|i| near(i, total[0] * size))
+/// Whether it is the sum of so many or more of the last ones. Where a name can be nothing else than that of a sum, the mass of two or more rows is
+/// enough if none of them speaks of a sum: lists of sums alone hold equal masses.
+///
+/// `only_grow` says that no mass is negative: nothing above rows that weigh more already makes the sum less, and lists of 60,000 parts whose
+/// names speak of a mass are not summed up once for each part.
+fn is_sum(parts: &[Weight], least: usize, of: &Weight, size: f64, only_grow: bool) -> bool {
+    let mut sum = Sum::default();
+    for part in parts.iter().rev() {
+        sum.add(part);
+        if only_grow && sum.is_heavier(of) {
+            return false;
+        }
+        let by_mass = least == 1 && sum.count > 1 && !sum.has_sums && sum.has_mass(of);
+        if by_mass || sum.count >= least && sum.is_same(of, size) {
+            return true;
+        }
+    }
+    false
 }
 
 /// The greatest coordinate of a mass centre, m.
@@ -83,22 +166,98 @@ fn size(rows: &[PartRow]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::tests::read;
     use super::*;
     use proptest::prelude::*;
+
+    const HEAD: &str = "name,mass,Cx,Cy,Cz,Ixx,Iyy,Izz\n";
+
+    /// Masses and places of some parts, as a spreadsheet computes them.
+    fn parts(count: std::ops::Range<usize>) -> impl Strategy<Value = Vec<(f64, [f64; 3])>> {
+        prop::collection::vec((1.0..50.0f64, prop::array::uniform3(-1.0..3.0f64)), count)
+    }
+
+    /// A row that shows so many decimals of mass and mass centre.
+    fn row(name: &str, (mass, c): (f64, [f64; 3]), [of_mass, of_centre]: [usize; 2]) -> String {
+        let [x, y, z] = c.map(|x| format!("{x:.of_centre$}"));
+        format!("{name},{mass:.of_mass$},{x},{y},{z},50,50,40\n")
+    }
+
+    fn total(parts: &[(f64, [f64; 3])]) -> (f64, [f64; 3]) {
+        let mass: f64 = parts.iter().map(|(mass, _)| mass).sum();
+        let of = |axis: usize| parts.iter().map(|(m, c)| m * c[axis]).sum::<f64>() / mass;
+        (mass, [of(0), of(1), of(2)])
+    }
 
     proptest! {
         /// That sums of masses that only grow are given up where they are heavier changes no answer: half of these rows are sums.
         #[test]
         fn what_is_heavier_is_no_sum(
-            parts in prop::collection::vec((0.0..3.0f64, prop::array::uniform3(-1.0..1.0f64)), 1..12),
-            (summed, least, of_some, off) in (1..12_usize, 1..4_usize, any::<bool>(), 0.998..1.002f64),
+            parts in parts(1..12),
+            (summed, least, of_some, off) in (1..12_usize, 1..4_usize, any::<bool>(), 0.98..1.02f64),
+            (rounding, has_sums) in (prop::array::uniform2(0.0..0.01f64), any::<bool>()),
         ) {
-            let parts: Vec<Moments> =
-                parts.into_iter().map(|(mass, [x, y, z])| [mass, mass * x, mass * y, mass * z]).collect();
-            let last = parts.iter().rev().take(summed);
-            let of = if of_some { last.fold([0.0; 4], |sum, one| plus(sum, *one)) } else { parts[0] };
-            let of = of.map(|x| x * off);
-            prop_assert_eq!(is_sum(&parts, least, of, 1.0, true), is_sum(&parts, least, of, 1.0, false));
+            let weight = |(mass, centre): (f64, [f64; 3])| Weight {
+                mass, centre, mass_off: rounding[0] * mass, centre_off: [rounding[1]; 3], speaks_of_a_sum: has_sums,
+            };
+            let last = &parts[parts.len().saturating_sub(summed)..];
+            let (mass, centre) = if of_some { total(last) } else { parts[0] };
+            let of = weight((off * mass, centre));
+            let parts: Vec<Weight> = parts.iter().map(|part| weight(*part)).collect();
+            let [grows, any] = [true, false].map(|only_grow| is_sum(&parts, least, &of, 1.0, only_grow));
+            prop_assert_eq!(grows, any);
         }
+
+        /// A total is one in whatever digits it and its parts are shown, and no part of a list is one.
+        #[test]
+        fn a_total_is_seen_in_the_digits_of_a_spreadsheet(
+            parts in parts(2..9),
+            decimals in prop::array::uniform2(2_usize..6),
+            (of_parts, at) in (prop::option::of(3_usize..6), any::<prop::sample::Index>()),
+        ) {
+            let shown = of_parts.map_or(decimals, |more| [more; 2]);
+            let rows = |parts: &[(f64, [f64; 3])], name: &str| {
+                parts.iter().enumerate().map(|(i, part)| row(&format!("{name} {i}"), *part, shown)).collect::<String>()
+            };
+            // Names that speak of a mass or a sum are names of parts as well.
+            for name in ["part", "tank mass", "total pressure sensor"] {
+                let list = read(&format!("{HEAD}{}", rows(&parts, name)));
+                let list = list.map_err(|error| TestCaseError::fail(format!("{}{error}", rows(&parts, name))))?;
+                prop_assert!(list.like_totals().is_empty(), "{}", rows(&parts, name));
+            }
+            let of_all = total(&parts);
+            let list = |name: &str| format!("{HEAD}{}{}", rows(&parts, "part"), row(name, of_all, decimals));
+            let table = read(&list("craft")).unwrap();
+            let found: Vec<&str> = table.like_totals().iter().map(|row| row.name()).collect();
+            prop_assert_eq!(found, ["craft"], "{}", list("craft"));
+            for name in ["Bus total", "dry mass of the craft"] {
+                let found = read(&list(name));
+                prop_assert!(found.is_err(), "{}", list(name));
+            }
+            // The mass alone decides where the name can be nothing else, and only there.
+            let mut elsewhere = of_all;
+            elsewhere.1[at.index(3)] += 0.5;
+            let list = |name: &str| format!("{HEAD}{}{}", rows(&parts, "part"), row(name, elsewhere, decimals));
+            prop_assert!(read(&list("Sum of the bus")).is_err(), "{}", list("Sum of the bus"));
+            for name in ["craft", "dry mass of the craft"] {
+                let table = read(&list(name)).map_err(|error| TestCaseError::fail(error.to_string()))?;
+                prop_assert!(table.like_totals().is_empty());
+            }
+        }
+    }
+
+    /// Of a spreadsheet that shows two decimals.
+    #[test]
+    fn two_decimals_of_a_total_tell_it() {
+        let list = "A,10,1,2,3,1,1,1\nB,1,1.5,2,3,1,1,1\nC,5,0,0,0,1,1,1\n";
+        for (total, is_refused) in [("Bus total", true), ("Launch mass", true), ("Bus", false)] {
+            let found = read(&format!("{HEAD}{list}{total},16,0.72,1.38,2.06,50,50,40\n"));
+            assert_eq!(found.is_err(), is_refused, "{total}");
+            let like = found.map(|table| table.like_totals().len());
+            assert_eq!(like.unwrap_or(1), 1, "{total}");
+        }
+        // Sums alone are a list of parts, of equal masses, too.
+        let sums = "ADCS total,12,1,2,3,1,1,1\nEPS total,5,0,0,0,1,1,1\nBus total,17,9,9,9,1,1,1\n";
+        assert!(read(&format!("{HEAD}{sums}")).is_ok());
     }
 }
