@@ -10,7 +10,7 @@ use std::{
 use super::{
     ForeignError, ForeignTable, Form,
     models::Models,
-    of_csv::{CsvText, broken, reader},
+    of_csv::{CsvText, reader},
     of_parquet::{Whole, names, numbers, open, texts, unread, unread_codec},
     place_of,
     written::number,

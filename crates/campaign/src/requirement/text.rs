@@ -2,7 +2,10 @@
 
 use std::fmt;
 
-use super::{Bound, Measured, Requirement, RequirementError, words::Words};
+use super::{
+    Bound, Measured, Requirement, RequirementError,
+    words::{LEAST_PERCENT, Words},
+};
 use crate::number::plain;
 
 /// What a sign begins with.
@@ -13,9 +16,9 @@ pub(super) fn parse(text: &str) -> Result<Requirement, RequirementError> {
     let mut words = Words::new(text);
     let (measured, bound) = bounded(&mut words)?;
     words.expect("in")?;
-    let probability = words.share()?;
+    let probability = words.required_share()?;
     words.expect("at")?;
-    let confidence = words.share()?;
+    let confidence = words.required_share()?;
     words.end()?;
     let requirement = Requirement::new("", measured, bound, probability, confidence)?;
     Ok(Requirement { name: requirement.to_string(), ..requirement })
@@ -73,11 +76,13 @@ pub(super) fn write_bounded(
     }
 }
 
-/// A share in percent, as it stands in a line, or as it is where percent would not read back to the bit.
+/// A share in percent, as it stands in a line, or as it is where percent would not be read, or not back to the bit.
 pub(super) fn share(share: f64) -> String {
     // By the digits, as it is read.
-    let percent = format!("{share}e2").parse::<f64>().map(plain).unwrap_or_default();
-    if format!("{percent}e-2").parse() == Ok(share) { format!("{percent} %") } else { plain(share) }
+    let percent = format!("{share}e2").parse::<f64>().unwrap_or_default();
+    let text = plain(percent);
+    let reads_back = percent > LEAST_PERCENT && format!("{text}e-2").parse() == Ok(share);
+    if reads_back { format!("{text} %") } else { plain(share) }
 }
 
 #[cfg(test)]
@@ -170,6 +175,23 @@ mod tests {
     }
 
     proptest! {
+        /// A share that is written as a fraction with the sign of per cent is no share: it was a hundredth of what was meant.
+        #[test]
+        fn a_fraction_in_percent_is_refused(
+            percent in prop_oneof![1e-6..3.0_f64, prop::sample::select(vec![0.99, 0.9973, 1.0, 1.01, 0.5])],
+            of_confidence: bool,
+        ) {
+            let text = plain(percent);
+            let line = if of_confidence { format!("x <= 1 in 99 % at {text} %") } else { format!("x <= 1 in {text} % at 90 %") };
+            let found = line.parse::<Requirement>().map(|made| made.probability());
+            if percent > 1.0 && !of_confidence {
+                prop_assert!((found.unwrap() - percent / 100.0).abs() < 1e-15);
+            } else {
+                let refused = found.unwrap_err().to_string();
+                prop_assert!(percent > 1.0 || refused.contains(&format!("it must be {text} if that is the share, or ")), "{refused}");
+            }
+        }
+
         /// Shares up to both ends and beyond: what is refused is named, with its value, and all else is a requirement.
         #[test]
         fn shares_out_of_range_are_named(

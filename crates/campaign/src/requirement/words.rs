@@ -1,6 +1,10 @@
 //! A text that is taken word by word: names of columns, numbers, shares, signs.
 
 use super::RequirementError;
+use crate::number::plain;
+
+/// Shares up to this many per cent are written without the sign.
+pub(super) const LEAST_PERCENT: f64 = 1.0;
 
 /// A text that is taken word by word.
 #[derive(Clone, Debug)]
@@ -100,9 +104,22 @@ impl<'a> Words<'a> {
         let number = self
             .number()
             .ok_or_else(|| self.wrong("there must be a share, as 99.73 % or 0.9973"))?;
-        // By the digits, so that 99.73 % is 0.9973 to the bit.
-        let share = |x: f64| format!("{x}e-2").parse().unwrap_or(x / 100.0);
-        Ok(if self.take("%") { share(number) } else { number })
+        Ok(if self.take("%") { of_percent(number) } else { number })
+    }
+
+    /// The share that a requirement asks for. One of at most [`LEAST_PERCENT`] in percent is refused: it is most often one that is meant without.
+    pub(super) fn required_share(&mut self) -> Result<f64, RequirementError> {
+        let before = self.clone();
+        let share = self.share()?;
+        let mut after = before.clone();
+        let number = after.number().unwrap_or(share);
+        if !(after.take("%") && 0.0 < number && number <= LEAST_PERCENT) {
+            return Ok(share);
+        }
+        let [itself, hundredth] = [number, share].map(plain);
+        Err(before.wrong(&format!(
+            "a share of at most 1 % is written without the sign: it must be {itself} if that is the share, or {hundredth} if {itself} % is"
+        )))
     }
 
     /// At most (true) or at least.
@@ -115,6 +132,11 @@ impl<'a> Words<'a> {
             Err(self.wrong("there must be “<=” or “>=”"))
         }
     }
+}
+
+/// By the digits, so that 99.73 % is 0.9973 to the bit.
+fn of_percent(number: f64) -> f64 {
+    format!("{number}e-2").parse().unwrap_or(number / 100.0)
 }
 
 fn is_plain(letter: char) -> bool {
