@@ -269,7 +269,7 @@ fn what_is_not_read_is_named_in_text_and_in_json() {
     let told = shell.done(&["check", "f"], 0);
     for note in [
         "note: f/a.json:2: 2 keys are not read: colour, material",
-        "note: f/d.csv:2: 1 column is not read, for cells name things and no units: unit",
+        "note: f/d.csv:2: 1 column is not read: unit; the cells name things and no units",
     ] {
         assert!(told.lines().any(|line| line == note), "{told}");
     }

@@ -285,7 +285,7 @@ mod tests {
         let error = |raw| Number::parse("ixx", raw, None).unwrap_err().to_string();
         assert_eq!(
             error("1,5"),
-            "ixx = \"1,5\" is not a number: decimal commas are not read, and a point must stand there"
+            "ixx = \"1,5\" is not a number: decimal commas are not read, and neither are commas between thousands: a point must stand before decimals, and nothing between other digits"
         );
         assert_eq!(error(""), "ixx = \"\" is not a number");
         assert!(error("${m * r}").contains("xacro"));

@@ -7,12 +7,13 @@ use crate::{
     FileBody, FileBodyError, FileProblem, MAX_BODIES, Products,
     body::{ENTRIES, Number, Reading},
     error::Refusal,
-    gap::Gaps,
+    gap::{GapKind, Gaps},
     products_comment::stated_products,
     table_header::{BELOW, FIELDS, MASS, NAME, PRODUCTS, find_header},
     text::Text,
 };
 
+/// The bodies of a table, and the columns of which nothing is read.
 pub(crate) fn read(text: &Text, default: Products) -> Result<(Vec<FileBody>, Gaps), Refusal> {
     let (header, mut rows) = find_header(text)?;
     let products = stated_products(text)?.unwrap_or(default);
@@ -52,12 +53,16 @@ pub(crate) fn read(text: &Text, default: Products) -> Result<(Vec<FileBody>, Gap
         bodies.push(FileBody::new(name, line, reading).summing_up(summary));
     }
     let mut gaps = Gaps::default();
-    if !things.is_empty() {
-        let line = text.line(header.row.first().map_or(0, |field| field.start));
-        gaps.add_things(
-            line,
-            things.iter().filter_map(|at| header.heading(text, *at)).map(str::to_owned).collect(),
-        );
+    let line = text.line(header.row.first().map_or(0, |field| field.start));
+    let things = things.iter().filter_map(|at| header.heading(text, *at)).map(str::to_owned);
+    let has_masses = header.columns[MASS].is_some();
+    for (kind, unread) in [
+        (GapKind::Things, things.collect()),
+        (GapKind::Columns { has_masses }, header.unread_columns(text)),
+    ] {
+        if !unread.is_empty() {
+            gaps.add_keys(kind, line, unread);
+        }
     }
     Ok((bodies, gaps))
 }
@@ -94,7 +99,8 @@ fn reading<'a>(
 mod tests {
     use super::*;
     fn try_read(csv: &str) -> Result<Vec<FileBody>, Refusal> {
-        read(&Text::new(csv.as_bytes(), true).unwrap(), Products::TensorEntries).map(|read| read.0)
+        let read = read(&Text::new(csv.as_bytes(), true).unwrap(), Products::TensorEntries);
+        read.map(|(bodies, _)| bodies)
     }
 
     fn six(body: &FileBody) -> [f64; 6] {

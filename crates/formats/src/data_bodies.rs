@@ -3,12 +3,12 @@
 use std::collections::HashSet;
 
 use crate::{
-    FileBody, FileBodyError, FileProblem, GapKind, MAX_BODIES, Products,
+    FileBody, FileBodyError, FileProblem, MAX_BODIES, Products,
     body::{Number, Reading, entry_of, shortened},
     data_item::{Item, Value},
     data_keys::{self, INERTIA},
     error::Refusal,
-    gap::Gaps,
+    gap::{GapKind, Gaps},
     text::Text,
 };
 
@@ -70,7 +70,7 @@ fn unread_keys(text: &Text, root: &Item<'_>, found: &[(&str, &Item<'_>)], gaps: 
     let Some(line) = unread.first().map(|(_, value)| text.line(value.start)) else { return };
     let mut seen = HashSet::new();
     unread.retain(|(key, _)| seen.insert(key));
-    gaps.add_keys(line, unread.into_iter().map(|(key, _)| key.clone()).collect());
+    gaps.add_keys(GapKind::Keys, line, unread.into_iter().map(|(key, _)| key.clone()).collect());
 }
 
 /// What of a document is a body or should be one, with the names of those that have them, in the order of the file.

@@ -219,11 +219,11 @@ impl From<FileProblem> for Refusal {
     }
 }
 
-/// What is said beside a number with a decimal comma.
+/// What is said beside a number with a comma, or of another base.
 fn hint(value: &str) -> &'static str {
-    let has_one = value.matches(',').count() == 1 && !value.contains('.');
-    if has_one && value.replace(',', ".").parse::<f64>().is_ok() {
-        ": decimal commas are not read, and a point must stand there"
+    if value.contains(',') && value.replace([',', '.'], "").parse::<f64>().is_ok() {
+        ": decimal commas are not read, and neither are commas between thousands: a point must stand before decimals, and nothing between \
+         other digits"
     } else if ["0x", "0o", "0b"].iter().any(|prefix| value.starts_with(prefix)) {
         " that is read here: it must have decimal digits"
     } else {

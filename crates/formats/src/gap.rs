@@ -22,6 +22,11 @@ pub enum GapKind {
     Keys,
     /// A column of units in a table that names things, as those of a series.
     Things,
+    /// Columns of a table that mean nothing here.
+    Columns {
+        /// Whether another column holds the masses.
+        has_masses: bool,
+    },
 }
 
 /// Parts of one kind that were not read.
@@ -62,7 +67,7 @@ impl Gap {
         &self.files
     }
 
-    /// The keys that are not read, each once, in the order of the file, or the headings of the columns.
+    /// The keys or columns that are not read, each once, in the order of the file.
     #[must_use]
     pub fn keys(&self) -> &[String] {
         &self.keys
@@ -77,7 +82,7 @@ impl Gap {
             | GapKind::Included
             | GapKind::Computed
             | GapKind::Misplaced => true,
-            GapKind::Keys | GapKind::Things => false,
+            GapKind::Keys | GapKind::Columns { .. } | GapKind::Things => false,
         }
     }
 
@@ -92,6 +97,7 @@ impl Gap {
             | GapKind::Computed
             | GapKind::Misplaced
             | GapKind::Keys
+            | GapKind::Columns { .. }
             | GapKind::Things => false,
         }
     }
@@ -130,24 +136,27 @@ impl fmt::Display for Gap {
                 "{} where this format has none",
                 count("inertia stands", "inertias stand")
             ),
-            GapKind::Keys => {
-                let (named, rest) = self.keys.split_at(self.keys.len().min(KEYS));
-                let named: Vec<String> = named.iter().map(|key| shortened(key)).collect();
-                let is = if self.keys.len() == 1 { "key is" } else { "keys are" };
-                write!(f, "{} {is} not read: {}", self.keys.len(), named.join(", "))?;
-                if rest.is_empty() { Ok(()) } else { write!(f, " and {} more", rest.len()) }
+            GapKind::Keys => self.name_keys(f, ["key", "keys"]),
+            GapKind::Columns { has_masses } => {
+                self.name_keys(f, ["column", "columns"])?;
+                f.write_str(if has_masses { "" } else { "; no column of masses is read" })
             }
             GapKind::Things => {
-                let named: Vec<String> = self.keys.iter().map(|key| shortened(key)).collect();
-                let is = if self.keys.len() == 1 { "column is" } else { "columns are" };
-                write!(
-                    f,
-                    "{} {is} not read, for cells name things and no units: {}",
-                    self.keys.len(),
-                    named.join(", ")
-                )
+                self.name_keys(f, ["column", "columns"])?;
+                f.write_str("; the cells name things and no units")
             }
         }
+    }
+}
+
+impl Gap {
+    /// That the keys, which are called so, are not read.
+    fn name_keys(&self, f: &mut fmt::Formatter<'_>, [one, many]: [&str; 2]) -> fmt::Result {
+        let (named, rest) = self.keys.split_at(self.keys.len().min(KEYS));
+        let named: Vec<String> = named.iter().map(|key| shortened(key)).collect();
+        let are = if self.keys.len() == 1 { format!("{one} is") } else { format!("{many} are") };
+        write!(f, "{} {are} not read: {}", self.keys.len(), named.join(", "))?;
+        if rest.is_empty() { Ok(()) } else { write!(f, " and {} more", rest.len()) }
     }
 }
 
@@ -175,15 +184,9 @@ impl Gaps {
         }
     }
 
-    /// Adds keys that are not read, each once, and the line of the first.
-    pub(crate) fn add_keys(&mut self, line: usize, keys: Vec<String>) {
-        let (kind, count) = (GapKind::Keys, keys.len());
-        self.0.push(Gap { kind, line, count, files: Vec::new(), keys });
-    }
-
-    /// Adds columns that name things, by their headings, and the line of the header.
-    pub(crate) fn add_things(&mut self, line: usize, keys: Vec<String>) {
-        let (kind, count) = (GapKind::Things, keys.len());
+    /// Adds keys or columns that are not read, each once, and the line of the first.
+    pub(crate) fn add_keys(&mut self, kind: GapKind, line: usize, keys: Vec<String>) {
+        let count = keys.len();
         self.0.push(Gap { kind, line, count, files: Vec::new(), keys });
     }
 

@@ -4,7 +4,7 @@ use crate::units::squeezed;
 
 /// What is written of standard deviations, wherever it stands, and in words of their own.
 const MARKS: [&str; 5] = ["sigma", "percent", "%", "σ", "±"];
-const WORDS: [&str; 38] = [
+const WORDS: [&str; 61] = [
     "sd",
     "std",
     "stdev",
@@ -43,6 +43,30 @@ const WORDS: [&str; 38] = [
     "rms",
     "se",
     "sem",
+    // Limits are no less.
+    "min",
+    "max",
+    "minimum",
+    "maximum",
+    "lower",
+    "upper",
+    "low",
+    "high",
+    "95",
+    "99",
+    "p5",
+    "p05",
+    "p95",
+    "p99",
+    "toleranz",
+    "tolérance",
+    "unsicherheit",
+    "streuung",
+    "abweichung",
+    "standardabweichung",
+    "incertitude",
+    "incertezza",
+    "incertidumbre",
 ];
 
 /// Whether a heading has a mark of uncertainty.
@@ -89,7 +113,7 @@ pub(crate) fn beside_word(word: &str) -> impl Iterator<Item = &str> {
 
 /// Whether it speaks of nothing else, so that nobody knows of which number: `uncertainty`, `tolerance [kg]`.
 pub(crate) fn is_alone(heading: &str) -> bool {
-    const SURE: [&str; 13] = [
+    const SURE: [&str; 20] = [
         "uncertainty",
         "uncert",
         "unc",
@@ -103,6 +127,13 @@ pub(crate) fn is_alone(heading: &str) -> bool {
         "variance",
         "error",
         "accuracy",
+        "toleranz",
+        "tolérance",
+        "unsicherheit",
+        "standardabweichung",
+        "incertitude",
+        "incertezza",
+        "incertidumbre",
     ];
     const BESIDE: [&str; 9] = ["standard", "kg", "g", "lb", "m", "mm", "in", "1", "3"];
     let lower = heading.to_lowercase();

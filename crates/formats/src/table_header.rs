@@ -90,6 +90,22 @@ pub(crate) struct Header {
 }
 
 impl Header {
+    /// The headings of columns that no check reads, each once.
+    pub(crate) fn unread_columns(&self, text: &Text) -> Vec<String> {
+        let is_read = |at: usize| {
+            self.columns.contains(&Some(at)) || self.unread.iter().any(|(other, _)| *other == at)
+        };
+        let others = self.row.iter().enumerate().filter(|(at, _)| !is_read(*at));
+        let mut found: Vec<String> = Vec::new();
+        for (_, field) in others {
+            let heading = field.of(text.as_str()).trim().replace("\"\"", "\"");
+            if !heading.is_empty() && !found.contains(&heading) {
+                found.push(heading);
+            }
+        }
+        found
+    }
+
     /// Why a row is refused that says by a cell which is not read that its inertia is another one.
     pub(crate) fn unread(&self, text: &Text, row: &[Field]) -> Option<FileBodyError> {
         self.problem(text, row, Unread::problem).map(|(_, error)| error)
@@ -140,7 +156,7 @@ fn is_thing(what: Unread, heading: &str, cell: &str) -> bool {
 /// number of a sample, or the angle at which it was measured.
 fn would_change(heading: &str) -> Option<Unread> {
     match Unread::of(heading)? {
-        what @ (Unread::Unit | Unread::Reference) => Some(what),
+        what @ (Unread::Unit | Unread::Reference | Unread::Sign) => Some(what),
         Unread::Count | Unread::Turn | Unread::Growth => None,
     }
 }

@@ -3,19 +3,28 @@
 use crate::body::shortened;
 
 /// Units of mass, and what they are in kg.
-pub(crate) const MASSES: [(&str, f64); 7] = [
+pub(crate) const MASSES: [(&str, f64); 9] = [
     ("kg", 1.0),
     ("g", 1e-3),
     ("mg", 1e-6),
     ("t", 1e3),
     ("lb", 0.453_592_37),
+    ("lbs", 0.453_592_37),
     ("lbm", 0.453_592_37),
     ("slug", 14.593_902_937_206_36),
+    ("slugs", 14.593_902_937_206_36),
 ];
 
 /// Units of length, and what their squares are in m².
-pub(crate) const LENGTHS: [(&str, f64); 5] =
-    [("m", 1.0), ("cm", 1e-4), ("mm", 1e-6), ("in", 6.4516e-4), ("ft", 0.092_903_04)];
+pub(crate) const LENGTHS: [(&str, f64); 7] = [
+    ("m", 1.0),
+    ("cm", 1e-4),
+    ("mm", 1e-6),
+    ("in", 6.4516e-4),
+    ("inch", 6.4516e-4),
+    ("inches", 6.4516e-4),
+    ("ft", 0.092_903_04),
+];
 
 /// What a unit measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -16,6 +16,9 @@ const MASSES: [(&str, f64); 8] = [
 ];
 const LENGTHS: [(&str, f64); 5] =
     [("m", 1.0), ("cm", 0.01), ("mm", 0.001), ("in", 0.0254), ("ft", 0.3048)];
+/// Other words for some of them.
+const SAME_MASSES: [(&str, &str); 2] = [("lbs", "lb"), ("slugs", "slug")];
+const SAME_LENGTHS: [(&str, &str); 2] = [("inch", "in"), ("inches", "in")];
 const BETWEEN: [&str; 10] = ["", " ", "*", "·", "_", "-", "⋅", "×", ".", " * "];
 const SQUARES: [&str; 5] = ["2", "^2", "²", "^{2}", "**2"];
 /// What stands around a unit after a name.
@@ -197,6 +200,37 @@ fn units_of_mass_and_length_are_read_after_every_mark() {
     }
 }
 
+#[test]
+fn units_in_other_words_are_the_same() {
+    let find = |all: &[(&str, f64)], name: &str| {
+        all.iter().find(|(known, _)| *known == name).map_or(f64::NAN, |(_, si)| *si)
+    };
+    let masses: Vec<(&str, f64)> = MASSES
+        .into_iter()
+        .chain(SAME_MASSES.map(|(name, same)| (name, find(&MASSES, same))))
+        .collect();
+    let lengths: Vec<(&str, f64)> = LENGTHS
+        .into_iter()
+        .chain(SAME_LENGTHS.map(|(name, same)| (name, find(&LENGTHS, same))))
+        .collect();
+    for (mass, kg) in &masses {
+        for (length, m) in &lengths {
+            for (between, square) in [(" ", "2"), ("·", "²"), ("*", "^2"), ("_", "**2")] {
+                let table = format!(
+                    "mass [{mass}],cx_{length},cy,cz,ixx ({mass}{between}{length}{square}),iyy,izz\n1,1,0,0,1,1,1\n"
+                );
+                let found = ten(table.as_bytes()).unwrap();
+                let values = found.rows()[0].values().unwrap();
+                for (found, expected) in
+                    [(values[0], *kg), (values[1], *m), (values[4], kg * m * m)]
+                {
+                    assert!(is_near(found, expected), "{table}{values:?}");
+                }
+            }
+        }
+    }
+}
+
 /// Mass, mass centre and inertia, each in a unit of SI, in another or in none that is stated, beside titles that speak of units or not: where one
 /// says that it is not in SI, none is read without a unit.
 #[test]
@@ -265,10 +299,10 @@ fn a_number_in_a_unit_that_is_not_known_is_refused_and_never_passed_over() {
                 let heading = format!("{}{before}{bad}{after}", TEN[at]);
                 let is_percent = bad.contains('%');
                 let known = match at {
-                    0 => "it must be in kg, g, mg, t, lb, lbm or slug",
-                    1..=3 => "it must be in m, cm, mm, in or ft",
+                    0 => "it must be in kg, g, mg, t, lb, lbs, lbm, slug or slugs",
+                    1..=3 => "it must be in m, cm, mm, in, inch, inches or ft",
                     _ => {
-                        "it must be in kg, g, mg, t, lb, lbm or slug, times m², cm², mm², in² or ft²"
+                        "it must be in kg, g, mg, t, lb, lbs, lbm, slug or slugs, times m², cm², mm², in², inch², inches² or ft²"
                     }
                 };
                 let said = |message: &str| {
@@ -303,7 +337,7 @@ fn a_number_in_a_unit_that_is_not_known_is_refused_and_never_passed_over() {
 fn other_words_make_another_column_beside_the_number() {
     let numbers = "mass,cx,cy,cz,ixx,iyy,izz,ixy,ixz,iyz";
     for name in TEN {
-        for words in ["_source", " about the base", "_max", ""] {
+        for words in ["_source", " about the base", "_target", ""] {
             let extra =
                 if words.is_empty() { format!("{name}ive") } else { format!("{name}{words}") };
             let table = format!("name,{numbers},{extra}\na,1,0,0,0,1,1,1,0,0,0,7\n");

@@ -6,12 +6,18 @@ use gyradius_formats::{
 use proptest::{prelude::*, sample::select};
 use std::path::Path;
 
-const REFERENCES: [&str; 5] = [
+const REFERENCES: [&str; 11] = [
     "inertia about",
     "Inertia_about",
     "MOI ref. point",
     "moments about the point",
     "\"inertia about\"",
+    "about",
+    "about point",
+    "Inertia Ref",
+    "MOI reference",
+    "MOI at",
+    "inertia_frame",
 ];
 const UNITS: [&str; 6] =
     ["unit", "Units", "uom", "inertia_units", "unit of inertia", "units of the moments"];
@@ -153,6 +159,72 @@ fn other_columns_of_bodies_may_be_anything() {
         let file =
             InertiaFile::parse(Path::new("t.csv"), text.into_bytes(), Products::default()).unwrap();
         assert_eq!(file.bodies()[0].inertia().unwrap()[(1, 1)], 5.0, "{heading}");
+    }
+}
+
+/// A column on the sign of products, and columns of limits beside a number, are refused in a list of parts, and none is passed over; signs in
+/// tables of bodies, too.
+#[test]
+fn signs_and_limits_are_refused() {
+    for heading in ["sign", "POI sign", "Sign of products"] {
+        for cell in ["+", "-", "negative", "tensor"] {
+            let text =
+                format!("name,mass,cx,cy,cz,ixx,iyy,izz,{heading}\na,5,1,2,3,4,5,6,{cell}\n");
+            let refused = PartsTable::read(text.as_bytes(), None).unwrap_err().to_string();
+            assert!(refused.contains("a column products"), "{refused}");
+            let file =
+                InertiaFile::parse(Path::new("t.csv"), text.into_bytes(), Products::default())
+                    .unwrap();
+            assert!(file.bodies()[0].inertia().is_err(), "{heading} {cell}");
+        }
+    }
+    for word in
+        ["min", "max", "lower", "Upper", "95", "tol", "Toleranz", "Unsicherheit", "incertitude"]
+    {
+        for number in ["mass", "Ixx", "xcg", "Izz", "Cy"] {
+            for heading in [
+                format!("{number}_{word}"),
+                format!("{word} {number}"),
+                format!("{number} {word} [kg]"),
+            ] {
+                let text = format!("name,mass,cx,cy,cz,ixx,iyy,izz,{heading}\na,5,1,2,3,4,5,6,1\n");
+                let refused = PartsTable::read(text.as_bytes(), None).unwrap_err().to_string();
+                assert!(refused.contains("no standard deviation"), "{heading}: {refused}");
+            }
+        }
+    }
+}
+
+proptest! {
+    /// Whoever checks a table says which columns it has passed over, and whether a mass is among those that it reads.
+    #[test]
+    fn columns_that_are_not_read_are_named(
+        known in prop::sample::subsequence(vec!["name", "mass [kg]", "ixx [kg m2]", "iyy", "izz", "products", "unit"], 0..=7),
+        others in prop::sample::subsequence(vec!["Weight (lb)", "Gewicht", "cx", "note", "status", "ixx_source"], 0..=6),
+        order in Just((0..13_usize).collect::<Vec<_>>()).prop_shuffle(),
+    ) {
+        let mut known = known;
+        for moment in ["ixx [kg m2]", "iyy", "izz"] {
+            if !known.contains(&moment) {
+                known.push(moment);
+            }
+        }
+        let mut all: Vec<(usize, &str)> = order.into_iter().zip(known.iter().chain(&others).copied()).collect();
+        all.sort_unstable();
+        let headings: Vec<&str> = all.iter().map(|(_, heading)| *heading).collect();
+        let cells: Vec<&str> = headings.iter().map(|heading| if ["products", "unit"].contains(heading) { "" } else { "1" }).collect();
+        let text = format!("{}\n{}\n", headings.join(","), cells.join(","));
+        let file = InertiaFile::parse(Path::new("t.csv"), text.clone().into_bytes(), Products::default()).unwrap();
+        let unread: Vec<&str> = headings.iter().copied().filter(|heading| others.contains(heading)).collect();
+        let gaps: Vec<String> = file.gaps().iter().map(ToString::to_string).collect();
+        if unread.is_empty() {
+            prop_assert!(gaps.is_empty(), "{text}{gaps:?}");
+            return Ok(());
+        }
+        prop_assert_eq!(file.gaps().len(), 1);
+        prop_assert_eq!(file.gaps()[0].keys(), &unread[..]);
+        let has_masses = known.contains(&"mass [kg]");
+        prop_assert_eq!(gaps[0].contains("no column of masses is read"), !has_masses, "{}{}", text, gaps[0]);
     }
 }
 

@@ -123,7 +123,7 @@ pub enum PartsProblem {
     /// A column is missing.
     #[error("no column is called {column}, and there must be one")]
     NoColumn {
-        /// Its name.
+        /// Its names.
         column: &'static str,
     },
     /// A header alone.
@@ -229,7 +229,7 @@ pub enum PartsProblem {
     #[error(
         "{field} is not zero, and nothing says which sign products have: there must be a column \
          products that holds tensor (I12 = -∫xy dm) or integrals (+∫xy dm), a line \"# products = …\" \
-         above the header, or a flag"
+         above the header, or the option --products"
     )]
     Sign {
         /// The product.

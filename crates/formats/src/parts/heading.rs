@@ -303,6 +303,13 @@ fn word(plain: &str) -> Option<Column> {
     }
 }
 
+/// Whether a heading may be that of the names, in a list where no other is.
+pub(super) fn may_be_name(text: &str) -> bool {
+    let known =
+        ["partname", "itemname", "componentname", "bodyname", "item", "element", "description"];
+    known.contains(&squeezed(text).as_str())
+}
+
 /// A radius of gyration: `kx_m`, `Ky [in]`, `radius of gyration z`.
 fn gyration(text: &str) -> Option<Heading> {
     let axis = |plain: &str| match plain {
@@ -351,6 +358,9 @@ fn known_size(plain: &str) -> Option<&'static str> {
 
 /// A number of the ten or its deviation: `mass_kg`, `sigma_ixx`, `mass_sigma_kg`, `moments_percent`.
 fn quantity(text: &str) -> Option<Heading> {
+    if let Some(mass) = letter(text) {
+        return Some(mass);
+    }
     let ((group, is_deviation), tail) = longest_name(text, number)?;
     if ["percent", "%"].contains(&squeezed(tail.text()).as_str()) {
         return Some(Heading::Column(Column::Deviation(group, Scale::Percent)));
@@ -375,6 +385,15 @@ fn quantity(text: &str) -> Option<Heading> {
         }
         (Ok(_) | Err(_), Group(..)) => None,
     }
+}
+
+/// A mass by its letter alone, with a unit of mass or none: `m (kg)`. A letter that a word begins with is none.
+fn letter(text: &str) -> Option<Heading> {
+    let ((), tail) = longest_name(text, |name| (name == "m").then_some(()))?;
+    let unit = tail.unit(Dimension::Mass)?.ok()?;
+    let is_letter = !tail.text().starts_with(char::is_alphabetic);
+    let stated = (!unit.text.is_empty()).then_some(unit.si);
+    is_letter.then_some(Heading::Column(Column::Value(0, stated)))
 }
 
 /// A name of one of the ten, or of some of them, and whether it is of their deviation.
@@ -402,6 +421,13 @@ pub(crate) fn group(name: &str) -> Option<Group> {
         _ => {
             let centre = ["masscentre", "centre", "masscenter", "center", "com", "cog", "cg"];
             let of_centre = centre.iter().find_map(|word| of(name.strip_prefix(word)?));
+            // `X CG`, with the axis first.
+            let after = ["com", "cog", "cg", "bar"];
+            let of_axis = || match name.split_at_checked(1)? {
+                (axis @ ("x" | "y" | "z"), word) if after.contains(&word) => of(axis),
+                _ => None,
+            };
+            let of_centre = of_centre.or_else(of_axis);
             of_centre.or_else(|| entry_of(name).map(|entry| Group(4 + entry, 1)))
         }
     }

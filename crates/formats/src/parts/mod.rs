@@ -150,6 +150,13 @@ impl PartsTable {
         {
             columns[id] = Heading::Other;
         }
+        // Words that may say something else are names where nothing else is.
+        let other_name = || headings.iter().position(|heading| heading::may_be_name(heading));
+        if names == 0
+            && let Some(at) = other_name()
+        {
+            columns[at] = Heading::Column(Column::Name);
+        }
         let mut passed_over = Vec::new();
         for (at, (column, heading)) in columns.iter().zip(&headings).enumerate() {
             let refuse = |problem: PartsProblem| Err(PartsError::new(line, None, problem));
@@ -193,7 +200,8 @@ impl PartsTable {
         title_units::refused(&text, start, columns.iter().any(lacks))?;
         let has = |wanted: Column| columns.contains(&Heading::Column(wanted));
         let has_mass = columns.iter().any(|c| matches!(c, Heading::Column(Column::Value(0, _))));
-        for (there, column) in [(has(Column::Name), "name or id"), (has_mass, "mass")] {
+        let names = "name, id, part, body, link, component, item, element or description";
+        for (there, column) in [(has(Column::Name), names), (has_mass, "mass or m")] {
             if !there {
                 let error = PartsError::new(line, None, PartsProblem::NoColumn { column });
                 return Err(error.beside(&passed_over));
@@ -350,8 +358,10 @@ fn header(text: &Text) -> Result<Option<Header<'_>>, PartsError> {
     let is_header = |cells: &[String]| {
         let columns: Vec<Heading> = cells.iter().map(|cell| Heading::of(cell)).collect();
         let has = |is: fn(&Heading) -> bool| columns.iter().any(is);
-        has(|heading| *heading == Heading::Column(Column::Name))
-            && has(|heading| matches!(heading, Heading::Column(Column::Value(0, _))))
+        let has_name = has(|heading| *heading == Heading::Column(Column::Name))
+            || cells.iter().any(|cell| heading::may_be_name(cell))
+            || has(|heading| matches!(heading, Heading::Column(Column::Value(1..=3, _))));
+        has_name && has(|heading| matches!(heading, Heading::Column(Column::Value(0, _))))
     };
     let at = |(at, line): (usize, &str)| {
         let mut rows = Rows::at(text.as_str(), at, line);

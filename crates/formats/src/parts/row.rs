@@ -14,6 +14,14 @@ use crate::{
     table_terms::TableTerms,
 };
 
+/// What the columns of mass and mass centre may be called, in messages.
+const SPELLINGS: [&str; 4] = [
+    "mass or m",
+    "centre_x, Cx, CG X or Xcg",
+    "centre_y, Cy, CG Y or Ycg",
+    "centre_z, Cz, CG Z or Zcg",
+];
+
 /// How far the four components of an attitude may be from a unit quaternion.
 const UNIT: f64 = 1e-3;
 
@@ -200,7 +208,9 @@ impl Cells<'_> {
             | Heading::Signed
             | Heading::NoDeviation
             | Heading::SizeDeviation
-            | Heading::Unread(Unread::Turn | Unread::Growth | Unread::Unit | Unread::Reference)
+            | Heading::Unread(
+                Unread::Turn | Unread::Growth | Unread::Unit | Unread::Reference | Unread::Sign,
+            )
             | Heading::Other => false,
         };
         let mut cells = self.columns.iter().zip(self.headings).zip(self.cells);
@@ -254,7 +264,13 @@ impl Cells<'_> {
         }
         for i in 0..4 {
             if values[i].is_none() {
-                return Err(FileBodyError::Missing { field: VALUES[i] }.into());
+                let is_it =
+                    |h: &Heading| matches!(h, Heading::Column(Column::Value(j, _)) if *j == i);
+                return Err(if self.columns.iter().any(is_it) {
+                    FileBodyError::Missing { field: VALUES[i] }.into()
+                } else {
+                    PartsProblem::NoColumn { column: SPELLINGS[i] }
+                });
             }
         }
         let [mass_kg, x, y, z] = std::array::from_fn(|i| values[i].unwrap_or_default());

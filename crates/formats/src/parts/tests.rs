@@ -124,15 +124,21 @@ fn the_sign_of_products_is_never_guessed() {
 fn what_a_row_lacks_is_named() {
     for (text, expected) in [
         ("", "it is empty"),
-        ("mass,x\n", "line 1: no column is called name or id"),
+        (
+            "mass,x\n",
+            "line 1: no column is called name, id, part, body, link, component, item, element or",
+        ),
         ("name,parent\n", "line 1: no column is called mass"),
         ("name,mass,Mass [kg]\na,1,2\n", "line 1: columns \"mass\" and \"Mass [kg]\" say"),
         ("name,mass,mass\na,1,2\n", "line 1: columns \"mass\" and \"mass\" say the same"),
         ("name,mass,sigma_mess\na,1,2\n", "line 1: column \"sigma_mess\" is no standard deviation"),
-        ("name,mass,shape\na,1,point\n", "line 2: a: centre_x is missing"),
+        (
+            "name,mass,shape\na,1,point\n",
+            "line 2: a: no column is called centre_x, Cx, CG X or Xcg",
+        ),
         (
             "name,mass,shape,x_m,y_m\na,1,point,0,0\n",
-            "line 2: a: centre_x is missing; nothing is read from the columns \"x_m\", \"y_m\"",
+            "line 2: a: no column is called centre_x, Cx, CG X or Xcg, and there must be one; nothing is read from the columns \"x_m\", \"y_m\"",
         ),
         (
             "name,mass,cx,cy,cz,shape,Radius [furlong]\na,1,0,0,0,disc,1\n",
@@ -148,6 +154,14 @@ fn what_a_row_lacks_is_named() {
         ),
         ("name,mass,cx,cy,cz\na,1,0,0,0\n", "line 2: a: there is no inertia"),
         ("name,mass,cx,cy,cz\na,1,0,0\n", "line 2: the row has 4 values: there must be 5"),
+        (
+            "Mass list\n\nItem No,Mass,Cx,Cy,Cz\na,1,0,0,0\n",
+            "line 3: no column is called name, id, part, body, link, component, item, element or",
+        ),
+        (
+            "name,mass,cx,cy,cz\na,\"1,250\",0,0,0\n",
+            "line 2: a: mass = \"1,250\" is not a number: decimal commas are not read",
+        ),
         ("name,mass,cx,cy,cz\n", "line 1: no row stands below the header"),
         (
             "name,mass,\"cx (\"\")\",cy,cz\na,1,0,0,0\n",

@@ -20,8 +20,10 @@ pub(crate) enum Unread {
     Growth,
     /// The unit of a row.
     Unit,
-    /// The point that the inertia is about.
+    /// The point that the inertia is about, or the frame that it is in.
     Reference,
+    /// Which sign products have.
+    Sign,
 }
 
 /// A kind: words that a heading of it has, one of each list and in this order, and words that may stand beside them. With any other
@@ -29,9 +31,13 @@ pub(crate) enum Unread {
 type Words = (Unread, &'static [&'static [&'static str]], &'static [&'static str]);
 
 /// Names of the inertia as a whole.
-const INERTIAS: [&str; 5] = ["inertia", "inertias", "moi", "moments", "products"];
+const INERTIAS: [&str; 7] = ["inertia", "inertias", "moi", "mois", "moments", "poi", "products"];
 
-const KINDS: [Words; 8] = [
+/// Words for the point or the frame of an inertia, and what may stand beside them.
+const REFERENCES: [&str; 7] = ["about", "at", "reference", "ref", "frame", "origin", "wrt"];
+const BESIDE_REFERENCES: [&str; 7] = ["of", "taken", "the", "point", "and", "axis", "axes"];
+
+const KINDS: [Words; 10] = [
     // Before counts: `units` alone are those of the row.
     (
         Unread::Unit,
@@ -154,8 +160,21 @@ const KINDS: [Words; 8] = [
             "and",
         ],
     ),
-    (Unread::Reference, &[&INERTIAS, &["about"]], &["of", "taken", "the", "point", "and"]),
-    (Unread::Reference, &[&INERTIAS, &["reference", "ref"], &["point"]], &["of", "the"]),
+    (Unread::Reference, &[&INERTIAS, &REFERENCES], &BESIDE_REFERENCES),
+    (Unread::Reference, &[&["about"]], &["taken", "the", "point"]),
+    (
+        Unread::Sign,
+        &[&["sign", "signs"]],
+        &["of", "the", "products", "product", "poi", "pois", "inertia", "convention"],
+    ),
+    (
+        Unread::Sign,
+        &[
+            &["products", "product", "poi", "pois", "inertia"],
+            &["sign", "signs", "convention", "conv"],
+        ],
+        &["of", "the"],
+    ),
 ];
 
 /// Words and marks that say of an angle or an allowance that there is none.
@@ -206,7 +225,7 @@ impl Unread {
                 let says_something = cell.contains(char::is_alphabetic);
                 says_something.then(|| self.problem(heading, cell, terms)).flatten()
             }
-            Self::Count | Self::Turn | Self::Growth => None,
+            Self::Count | Self::Turn | Self::Sign | Self::Growth => None,
         }
     }
 
@@ -235,6 +254,10 @@ impl Unread {
                      say \"origin\""
                 }
             },
+            Self::Sign => {
+                "which sign products have must stand in a column products, as tensor (I12 = -∫xy dm) or integrals (+∫xy dm): the column \
+                 must be called so, or be empty"
+            }
             Self::Growth => {
                 "no growth allowance is added: the mass and the inertia must have it in them; the column must be empty, 0 or none"
             }
@@ -256,6 +279,8 @@ impl Unread {
                 is_none || words.filter(|word| !word.is_empty()).all(|word| of(word) == Some(0.0))
             }
             Self::Growth => is_none || of(cell) == Some(0.0),
+            // Signs alone say something here.
+            Self::Sign => false,
             Self::Unit => {
                 let heading = heading.to_lowercase();
                 let mut named: Vec<Dimension> = words(&heading).filter_map(dimension_of).collect();
@@ -340,6 +365,19 @@ mod tests {
             ("inertia about", Unread::Reference),
             ("MOI ref. point", Unread::Reference),
             ("moments about the point", Unread::Reference),
+            ("about", Unread::Reference),
+            ("about point", Unread::Reference),
+            ("Inertia Ref", Unread::Reference),
+            ("inertia reference", Unread::Reference),
+            ("MOI reference", Unread::Reference),
+            ("Inertia at", Unread::Reference),
+            ("MOI at", Unread::Reference),
+            ("inertia_frame", Unread::Reference),
+            ("POI ref. axes", Unread::Reference),
+            ("sign", Unread::Sign),
+            ("POI sign", Unread::Sign),
+            ("Sign of products", Unread::Sign),
+            ("product convention", Unread::Sign),
         ] {
             assert_eq!(Unread::of(heading), Some(kind), "{heading}");
         }
@@ -367,9 +405,10 @@ mod tests {
             "R1",
             "R110",
             "inertia class",
-            "about",
+            "about the supplier",
             "reference",
-            "inertia reference",
+            "frame",
+            "signed by",
             "moments",
             "material",
             "",

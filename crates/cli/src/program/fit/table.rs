@@ -103,7 +103,8 @@ pub(super) fn read(
     let file = InertiaFile::read(path, products)?;
     let place = path.display().to_string();
     // Columns are among those of which nothing was taken.
-    let gaps = file.gaps().iter().filter(|gap| gap.kind() != GapKind::Things);
+    let is_column = |kind| matches!(kind, GapKind::Things | GapKind::Columns { .. });
+    let gaps = file.gaps().iter().filter(|gap| !is_column(gap.kind()));
     let gaps: Vec<String> = gaps.map(|gap| format!("line {}: {gap}", gap.line())).collect();
     let given = match file.format() {
         Format::Urdf | Format::Mjcf | Format::Sdf => of_links(file, &place, form)?,
