@@ -23,7 +23,7 @@ use of_folder::{Folder, NOT_REGULAR, PARQUET, has_parquet_name};
 use of_parquet::{parquet_columns, scan_parquet};
 pub use twice::TwiceError;
 
-use crate::{column::Column, kept::Rows, origin::Origin, requirement::Counting};
+use crate::{column::Column, folder::RUNS, kept::Rows, origin::Origin, requirement::Counting};
 
 /// Bytes of a table that is held in memory, at most.
 const MOST_HELD: u64 = 1 << 30;
@@ -94,11 +94,7 @@ impl ForeignTable {
         let origin = || Origin::of(path).map_err(unread);
         if found.is_dir() {
             let Folder { files, beside } = Folder::read(path)?;
-            let none = || {
-                let problem = "it has no .parquet file; the run tables of a study are in runs/ below its folder, a folder for \
-                               each model";
-                failed(Origin::why_none(path, problem.to_owned()))
-            };
+            let none = || failed(Origin::why_none(path, without_tables(path)));
             let first = files.first().ok_or_else(none)?;
             let columns = parquet_columns(first)?;
             let table = Self::new(path, files, (Form::Parquet, columns), origin()?);
@@ -326,6 +322,21 @@ impl ForeignTable {
         }
         Ok(())
     }
+}
+
+/// What to say of a folder without Parquet files: of that of a study, which tables it has.
+fn without_tables(path: &Path) -> String {
+    let found = fs::read_dir(path.join(RUNS)).into_iter().flatten().flatten();
+    let mut tables: Vec<PathBuf> = found.map(|entry| entry.path()).filter(|p| p.is_dir()).collect();
+    tables.sort();
+    let names: Vec<String> = tables.iter().map(|table| table.display().to_string()).collect();
+    if names.is_empty() {
+        return "it has no .parquet file; the run tables of a study are in runs/ below its folder, a folder for each model".to_owned();
+    }
+    format!(
+        "it has no .parquet file, and below it are the tables of its runs: name {}",
+        names.join(" or ")
+    )
 }
 
 /// Where columns are among those that there are.

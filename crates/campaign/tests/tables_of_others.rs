@@ -462,3 +462,24 @@ fn rows_that_are_no_runs_are_seen() {
         );
     }
 }
+
+/// A cell with a comma says why it is none, and a folder of a study which tables it has.
+#[test]
+fn what_is_no_table_or_number_is_told_with_what_to_do() {
+    for cell in ["0,53", "-1,5", "1,250", "1,250.5", "1.250,5", "12,5e3"] {
+        let text = format!("run;x\n0;1\n1;{cell}\n");
+        let table = ForeignTable::read_csv("it".as_ref(), text.as_bytes()).unwrap();
+        let requirement: Requirement = "x <= 1 in 60 % at 80 %".parse().unwrap();
+        let refused = Judgement::of_table(&[requirement], &table).unwrap_err().to_string();
+        let said = format!("line 3, column \"x\": {cell:?} is not a number: commas are not read");
+        assert!(refused.contains(&said), "{refused}");
+    }
+    let scratch = scratch();
+    let opened = || ForeignTable::open(scratch.path()).unwrap_err().to_string();
+    assert!(opened().contains("in runs/ below its folder"), "{}", opened());
+    for model in ["a", "b"] {
+        fs::create_dir_all(scratch.path().join("runs").join(model)).unwrap();
+        let named = scratch.path().join("runs").join(model).display().to_string();
+        assert!(opened().contains("name ") && opened().contains(&named), "{}", opened());
+    }
+}

@@ -605,3 +605,16 @@ fn a_closed_pipe_is_no_error() {
         Command::new("sh").current_dir(shell.path(".")).args(["-c", &script]).output().unwrap();
     assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
 }
+
+/// What a table holds and is not judged is named: a column of weights was passed over, and its bodies were possible.
+#[test]
+fn columns_that_are_not_read_are_named() {
+    let shell = Shell::new();
+    shell.write("w.csv", "name,Weight (lb),ixx,iyy,izz,note\na,-1,1,1,1,\n");
+    let (code, out, _) = shell.check(&["w.csv"]);
+    let note =
+        "note: w.csv:1: 2 columns are not read: Weight (lb), note; no column of masses is read";
+    assert!(code == 0 && out.lines().any(|line| line == note), "{out}");
+    shell.write("m.csv", "name,mass,ixx,iyy,izz\na,1,1,1,1\n");
+    assert!(!shell.check(&["m.csv"]).1.contains("not read"));
+}

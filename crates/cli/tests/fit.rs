@@ -444,3 +444,40 @@ fn totals_and_averages_are_no_samples() {
         assert!(said.contains("with.csv:42") && said.contains(word), "{said}");
     }
 }
+
+/// A table whose names say that its rows are samples of several bodies is no sample of one, whatever the order of the rows; names that stand
+/// once each, and one name, are of samples.
+#[test]
+fn rows_of_several_bodies_are_no_sample_of_one() {
+    let shell = Shell::new();
+    let rows = 60;
+    let table = |heading: &str, name: &dyn Fn(usize) -> String| {
+        let row = |i: usize| {
+            let x = ((i * 37) % 61) as f64 / 61.0;
+            format!("{},{},{},{}\n", name(i), 4.0 + x, 5.0 + x * x, 6.0 - x * 0.5)
+        };
+        format!("{heading},ixx,iyy,izz\n{}", (0..rows).map(row).collect::<String>())
+    };
+    for heading in ["link", "Name", "body", "part"] {
+        for several in [2, 3, 13] {
+            for blocks in [false, true] {
+                let name = |i: usize| {
+                    format!("arm {}", if blocks { i * several / rows } else { i % several })
+                };
+                shell.write("links.csv", &table(heading, &name));
+                let refused = shell.refused(&["fit", "links.csv"]);
+                assert!(refused.contains(&format!("the rows name {several} bodies")), "{refused}");
+                assert!(refused.contains("\"arm 0\" in "), "{refused}");
+            }
+        }
+        for name in [
+            &(|i: usize| format!("SN {i}")) as &dyn Fn(usize) -> String,
+            &|_| "arm".to_owned(),
+            &|i| format!("SN {}", i.max(1)),
+        ] {
+            shell.write("samples.csv", &table(heading, name));
+            let (_, _, message) = shell.run(&["fit", "samples.csv"]);
+            assert!(!message.contains("the rows name"), "{message}");
+        }
+    }
+}

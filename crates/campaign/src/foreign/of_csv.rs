@@ -3,8 +3,12 @@
 use std::{fs::File, io::Read, path::Path, sync::Arc};
 
 use super::{
-    Columns, ForeignError, OfModels, models::Models, places, reason::no_reason, status,
-    written::number,
+    Columns, ForeignError, OfModels,
+    models::Models,
+    places,
+    reason::no_reason,
+    status,
+    written::{hint, number},
 };
 use crate::{
     csv_lines::CsvLines,
@@ -123,8 +127,9 @@ pub(super) fn scan_csv(
                 let cell = row.get(*place).unwrap_or_default();
                 let number = number(cell).ok_or_else(|| {
                     let problem = format!(
-                        "line {line}, column {:?}: {cell:?} is not a number",
-                        there[*place]
+                        "line {line}, column {:?}: {cell:?} is not a number{}",
+                        there[*place],
+                        hint(cell)
                     );
                     ForeignError::new(path, problem)
                 })?;

@@ -17,3 +17,12 @@ pub(super) fn number(cell: &str) -> Option<Option<f64>> {
         other => (MISSING.contains(&other) || is_error(other.as_bytes())).then_some(None),
     }
 }
+
+/// What is said beside a cell that is no number: of one with a comma why.
+pub(super) fn hint(cell: &str) -> &'static str {
+    if cell.contains(',') && cell.replace([',', '.'], "").parse::<f64>().is_ok() {
+        ": commas are not read in numbers, neither before decimals nor between thousands: a point must stand before decimals"
+    } else {
+        ""
+    }
+}

@@ -245,4 +245,9 @@ Examples:
   gyradius rollup table.tsv --edges edges.tsv
       A table and a tree as the R package massProps has them
 
+A list of parts, with units in the headings (docs/rollup.md says all columns):
+  name,mass_kg,centre_x_m,centre_y_m,centre_z_m,ixx_kg_m2,iyy_kg_m2,izz_kg_m2,mass_percent
+  bus,300,0,0,0.5,60,60,50,2
+  tank,100,0,0,1.3,4,4,4,5
+
 Exit code: 0; 2 if something could not be read, put together or written; 130 after an interrupt, 143 after SIGTERM.";

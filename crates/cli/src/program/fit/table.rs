@@ -8,7 +8,11 @@ use gyradius_formats::{
 };
 use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties, Repair, RepairMethod};
 use nalgebra::Matrix3;
-use std::{collections::HashMap, error::Error, path::Path};
+use std::{
+    collections::{BTreeMap, HashMap},
+    error::Error,
+    path::Path,
+};
 
 /// Parts of a file that were not read, of which an error names no more.
 const NAMED: usize = 10;
@@ -31,6 +35,12 @@ pub(super) enum TableError {
         "{place}: the row says {label:?}, and one that sums up others is no sample: it must be left out of the table"
     )]
     Summary { place: String, label: String },
+    #[error(
+        "{place}: the rows name {count} bodies, and several of them more than once, as {name:?} in {rows} rows: a fit is of samples of one body, \
+         so that the rows of one must stand in a table of their own, or, if all rows are of one body, the column of the names have another heading, \
+         as \"note\""
+    )]
+    Bodies { place: String, count: usize, name: String, rows: usize },
     #[error("{place}: {name}: {problem}")]
     Link { place: String, name: String, problem: LinkProblem },
     #[error("{place}: {error}")]
@@ -102,7 +112,7 @@ pub(super) fn read(
 ) -> Result<Table, TableError> {
     let file = InertiaFile::read(path, products)?;
     let place = path.display().to_string();
-    // Columns are among those of which nothing was taken.
+    // Of which columns nothing was taken is told apart, for a fit reads more of them.
     let is_column = |kind| matches!(kind, GapKind::Things | GapKind::Columns { .. });
     let gaps = file.gaps().iter().filter(|gap| !is_column(gap.kind()));
     let gaps: Vec<String> = gaps.map(|gap| format!("line {}: {gap}", gap.line())).collect();
@@ -261,6 +271,7 @@ fn of_rows(file: &InertiaFile, place: &str, form: Option<TenForm>) -> Result<Giv
         Ok(row)
     };
     let rows = file.bodies().iter().map(row).collect::<Result<_, _>>()?;
+    one_body(file, place)?;
     // Of a CSV, the column is among those of which nothing was taken.
     let has_mass = |body: &&FileBody| file.format() != Format::Csv && body.mass_kg().is_some();
     let unread = file.bodies().iter().find(has_mass).map(|body| {
@@ -271,6 +282,22 @@ fn of_rows(file: &InertiaFile, place: &str, form: Option<TenForm>) -> Result<Giv
     });
     let unread = unread.into_iter().collect();
     Ok(Given { rows, whole: ten.is_some(), unused, unread })
+}
+
+/// That the rows are of one body, or each of another, as a series has them: with names that stand more than once, they are samples of several.
+fn one_body(file: &InertiaFile, place: &str) -> Result<(), TableError> {
+    let mut rows: BTreeMap<&str, usize> = BTreeMap::new();
+    for body in file.bodies().iter().filter(|body| !body.name().is_empty()) {
+        *rows.entry(body.name()).or_default() += 1;
+    }
+    let mut repeated = rows.iter().filter(|(_, rows)| **rows > 1);
+    match (repeated.next(), repeated.next()) {
+        (Some((name, of_one)), Some(_)) => {
+            let (place, count) = (place.to_owned(), rows.len());
+            Err(TableError::Bodies { place, count, name: (*name).to_owned(), rows: *of_one })
+        }
+        (None, _) | (Some(_), None) => Ok(()),
+    }
 }
 
 fn row_error(place: String, error: &FileBodyError) -> TableError {
