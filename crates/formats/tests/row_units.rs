@@ -145,7 +145,7 @@ fn columns_in_several_units_have_no_unit_of_a_row() {
         ("note,,", "inertia unit", "kg m2", true),
     ] {
         let text = format!(
-            "name,mass,cx [mm],cy [mm],cz [mm],{more},shape,{heading}\na,5,1,2,3,,,,point,{cell}\n"
+            "name,mass [kg],cx [mm],cy [mm],cz [mm],{more},shape,{heading}\na,5,1,2,3,,,,point,{cell}\n"
         );
         let list = PartsTable::read(text.as_bytes(), None);
         assert_eq!(list.is_ok(), is_true, "{more} {heading} {cell} {list:?}");

@@ -132,7 +132,9 @@ proptest! {
         order in Just((0..11).collect::<Vec<usize>>()).prop_shuffle(),
     ) {
         let [x, y, z] = centre;
-        let headings = ["mass", x, y, z, "ixx", "iyy", "izz", "ixy", "ixz", "iyz", heading];
+        let of_inertia = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"].map(|name| format!("{name} [kg m2]"));
+        let [ixx, iyy, izz, ixy, ixz, iyz] = of_inertia.each_ref().map(String::as_str);
+        let headings = ["mass [kg]", x, y, z, ixx, iyy, izz, ixy, ixz, iyz, heading];
         let cells = ["5", "1", "2", "3", "4", "5", "6", "0", "0", "0", cell];
         let line = |of: [&str; 11]| order.iter().map(|i| of[*i]).collect::<Vec<_>>().join(",");
         let text = format!("{}\n{}\n", line(headings), line(cells));
