@@ -92,7 +92,7 @@ impl Campaign {
         in_place: &'a OnceLock<BTreeSet<String>>,
     ) -> Contents<'a> {
         let seed = self.seed.to_string();
-        let same = move |there: &str| {
+        let same = move |there: &str, _| {
             let (there_seed, there) = there.split_once(' ').unwrap();
             there_seed == seed && there.parse::<u64>().unwrap() <= runs
         };
