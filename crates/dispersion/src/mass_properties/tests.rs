@@ -407,7 +407,7 @@ proptest! {
         };
         use JointScalar::{Centre1, Centre2, Centre3, Mass, Shape1, Shape2, Shape3};
         let sizes = [Shape1, Shape2, Shape3].map(law);
-        let uniform = gyradius_attitude::UniformAttitude;
+        let uniform = UniformAttitude;
         let tensor = if of_lengths { TensorLaw::gyration_lengths(sizes, uniform) } else { TensorLaw::roots(sizes, uniform) };
         let plain = MassPropertiesLaw::new(law(Mass), [Centre1, Centre2, Centre3].map(law), tensor).unwrap();
         for a in JointScalar::ALL {
