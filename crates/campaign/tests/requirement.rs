@@ -237,7 +237,8 @@ proptest! {
             Bound::AtLeast(limit) => format!("{name}≥{limit:?}"),
             Bound::Between(lower, upper) => format!("{lower:?}<= {name} <={upper:?}"),
         };
-        let text = if percent {
+        // Smaller ones are refused in percent.
+        let text = if percent && probability > 0.010_000_1 {
             format!("{said} in {} % at {}%", 100.0 * probability, 100.0 * confidence)
         } else {
             format!("  {said} in {probability} at {confidence} ")
