@@ -148,7 +148,8 @@ def test_another_function_is_told_by_what_was_kept(rows: str, columns: list[str]
 
     def simulate(inputs: dict[str, float]) -> dict[str, float]:
         if inputs["x"] > 1.1:
-            raise ValueError(f"too long by {state['add']}")
+            # Of the reason the words are compared, and not the numbers in it.
+            raise ValueError(f"too long by {state['add']}" if state["add"] == 0.0 else "too far")
         return {"y": inputs["x"] + state["add"]}
 
     def call() -> gyradius.Study:
