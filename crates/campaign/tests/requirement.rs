@@ -223,7 +223,7 @@ proptest! {
         prop_assert_eq!(judged[0].counted_at_looks(), looks.map(|look| at(look) as u64));
     }
 
-    /// A requirement that is printed is read as the same; so is one in JSON.
+    /// A requirement that is printed is read as the same; so is one in JSON. Shares of at most 1 % are refused in percent.
     #[test]
     fn requirements_read_back(
         (name, _) in quantity(),
@@ -237,7 +237,6 @@ proptest! {
             Bound::AtLeast(limit) => format!("{name}≥{limit:?}"),
             Bound::Between(lower, upper) => format!("{lower:?}<= {name} <={upper:?}"),
         };
-        // Smaller ones are refused in percent.
         let text = if percent && probability > 0.010_000_1 {
             format!("{said} in {} % at {}%", 100.0 * probability, 100.0 * confidence)
         } else {
