@@ -218,7 +218,14 @@ impl Alert {
                      that axis.",
                     direction(*spin_axis)
                 )),
-            Self::OffNominal(law) => Text::default().strong(law.title()).plain(format!(": {law}")),
+            Self::OffNominal(law) => {
+                let (text, said) = (Text::default().strong(law.title()), format!(": {law}"));
+                // What is to be written keeps its hyphens, which are minus signs in words.
+                match law.instead().and_then(|instead| Some((said.strip_suffix(instead)?, instead))) {
+                    Some((words, instead)) => text.plain(words).code(instead),
+                    None => text.plain(said),
+                }
+            }
             Self::HeavyTails { .. } => return is_first().then(|| together::heavy_tails(all)),
             Self::NearBoundary { model, body, near, drawn, margin } => {
                 let share = significant(100.0 * *near as f64 / *drawn as f64, 3);

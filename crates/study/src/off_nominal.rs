@@ -112,6 +112,14 @@ impl OffNominal {
         is_far.then_some(Self::Value { quantity, nominal, mean })
     }
 
+    /// What to write in place of the law, with which its message ends, if that is known.
+    pub(crate) fn instead(&self) -> Option<&str> {
+        match self {
+            Self::Change { instead, .. } => instead.as_deref(),
+            Self::Value { .. } | Self::Centre { .. } => None,
+        }
+    }
+
     /// What it is, in a few words.
     pub(crate) fn title(&self) -> String {
         match self {

@@ -1,7 +1,11 @@
 //! Laws of the value itself where a scenario takes laws of changes.
 
-use super::tests::{ordinary, study};
+use super::{
+    Alert,
+    tests::{ordinary, study},
+};
 use crate::{OffNominal, Scenario, subject::Subject};
+use gyradius_report::Text;
 use proptest::prelude::*;
 
 /// The table of a dispersion, a key in it, the component if it is of a vector, the column, the nominal value, and that in the unit of the key.
@@ -119,6 +123,10 @@ proptest! {
         prop_assert!((law_meant.mean() + nominal - given.mean()).abs() < 1e-9 * scale, "{}", instead);
         prop_assert!((law_meant.deviation() - given.deviation()).abs() < 1e-9 * scale, "{}", instead);
         prop_assert!(written.len() < 160, "{}", instead);
+        // It can be copied from the page, hyphens and all.
+        let alert = Alert::OffNominal(told[0].clone());
+        let text = alert.text(std::slice::from_ref(&alert)).unwrap();
+        prop_assert_eq!(text, Text::default().strong(told[0].title()).plain(format!(": {}", told[0]).strip_suffix(&**instead).unwrap()).code(&**instead));
         prop_assert_eq!(meant.off_nominal(), []);
         let about_no_change = with(number, &law(kind % 7, 0.0, wide * in_unit.abs()));
         prop_assert_eq!(about_no_change.off_nominal(), []);
