@@ -14,8 +14,8 @@ use std::{
 };
 
 use crate::{
-    LawFile, Scenario, ScenarioError, SimulatorScenario, column::Column, law_file::LawDraws,
-    model::Model, simulator::SimulatorDraws, subject::Subject,
+    LawFile, Scenario, ScenarioError, SimulatorScenario, column::Column, model::Model,
+    simulator::SimulatorDraws, subject::Subject,
 };
 
 /// Which draws, and how they are written.
@@ -93,7 +93,7 @@ impl<'a> Draw<'a> {
     /// As [`new`](Self::new).
     pub fn of_laws(laws: &'a LawFile, options: &DrawOptions) -> Result<Self, DrawError> {
         let models = chosen(laws.scenario(), options, |place| laws.draws(place))?;
-        Self::of(laws.scenario(), Drawn::Laws(models), options)
+        Self::of(laws.scenario(), Drawn::Simulator(models), options)
     }
 
     fn of<C: Subject>(
@@ -156,7 +156,6 @@ impl<'a> Draw<'a> {
         match &self.models {
             Drawn::Separation(models) => self.each_of(models, more, &mut take),
             Drawn::Simulator(models) => self.each_of(models, more, &mut take),
-            Drawn::Laws(models) => self.each_of(models, more, &mut take),
         }
     }
 
@@ -180,7 +179,6 @@ const MOST: u64 = i64::MAX as u64;
 enum Drawn<'a> {
     Separation(Vec<(String, SeparationDraws<'a>)>),
     Simulator(Vec<(String, SimulatorDraws<'a>)>),
-    Laws(Vec<(String, LawDraws<'a>)>),
 }
 
 impl Drawn<'_> {
@@ -188,7 +186,6 @@ impl Drawn<'_> {
         match self {
             Self::Separation(models) => models.len() as u64,
             Self::Simulator(models) => models.len() as u64,
-            Self::Laws(models) => models.len() as u64,
         }
     }
 
@@ -199,7 +196,6 @@ impl Drawn<'_> {
         match self {
             Self::Separation(models) => columns(models),
             Self::Simulator(models) => columns(models),
-            Self::Laws(models) => columns(models),
         }
     }
 }

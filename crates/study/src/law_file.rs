@@ -1,13 +1,12 @@
 //! A file with the laws of bodies and no scenario, as `gyradius model` and `gyradius fit` write them, ready to be drawn.
 
-use gyradius_campaign::{Cell, Column, Inputs, Simulation, Table, TableError};
 use gyradius_dispersion::{MassPropertiesLaw, ScalarLaw};
 use gyradius_inertia::MassProperties;
 use nalgebra::Matrix3;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::Distribution;
 use serde::Deserialize;
-use std::{collections::BTreeMap, ops::Range, path::Path};
+use std::{collections::BTreeMap, path::Path};
 
 use crate::{
     FragmentBody, ScenarioError, SimulatorScenario, parse_toml,
@@ -136,12 +135,8 @@ impl LawFile {
     }
 
     /// What is drawn.
-    pub(crate) fn draws(&self, place: usize) -> Result<LawDraws<'_>, ScenarioError> {
-        let draws = SimulatorDraws::new(&self.scenario, place)?;
-        let columns = Inputs::columns(&draws);
-        let shown =
-            columns.iter().map(|column| self.hidden.iter().all(|hidden| hidden != column.name()));
-        Ok(LawDraws { shown: shown.collect(), draws })
+    pub(crate) fn draws(&self, place: usize) -> Result<SimulatorDraws<'_>, ScenarioError> {
+        Ok(SimulatorDraws::new(&self.scenario, place)?.hiding(&self.hidden))
     }
 }
 
@@ -249,45 +244,5 @@ fn without_nulls(value: serde_json::Value) -> serde_json::Value {
         }
         Value::Array(list) => Value::Array(list.into_iter().map(without_nulls).collect()),
         same @ (Value::Null | Value::Bool(_) | Value::Number(_) | Value::String(_)) => same,
-    }
-}
-
-/// What the bodies of a file draw.
-#[derive(Debug)]
-pub(crate) struct LawDraws<'a> {
-    draws: SimulatorDraws<'a>,
-    /// Of each column, whether it is shown.
-    shown: Vec<bool>,
-}
-
-impl LawDraws<'_> {
-    fn shown<T>(&self, all: impl IntoIterator<Item = T>) -> impl Iterator<Item = T> {
-        all.into_iter().zip(&self.shown).filter(|(_, shown)| **shown).map(|(one, _)| one)
-    }
-}
-
-impl Simulation for LawDraws<'_> {
-    type Worker = Vec<Option<f64>>;
-
-    fn columns(&self) -> Vec<Column> {
-        self.shown(Inputs::columns(&self.draws)).collect()
-    }
-
-    fn worker(&self) -> Self::Worker {
-        Vec::new()
-    }
-
-    fn run(
-        &self,
-        runs: Range<u64>,
-        numbers: &mut Self::Worker,
-        rows: &mut Table,
-    ) -> Result<(), TableError> {
-        for run in runs {
-            numbers.clear();
-            let failure = self.draws.draw(run, numbers).err();
-            rows.push(failure, self.shown(numbers.iter()).map(|number| Cell::from(*number)))?;
-        }
-        Ok(())
     }
 }

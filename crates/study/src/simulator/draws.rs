@@ -21,6 +21,8 @@ pub(crate) struct SimulatorDraws<'a> {
     /// The columns of vehicle and flight, if there are vehicles, and those of what is drawn.
     own: Vec<Column>,
     columns: Vec<Column>,
+    /// Of each of the latter, whether rows have it. A simulator is sent all.
+    shown: Vec<bool>,
     bodies: &'a [SimulatedBody],
     quantities: &'a [Number],
     dispersed: &'a Joint<usize>,
@@ -46,12 +48,14 @@ impl<'a> SimulatorDraws<'a> {
         let laws = bodies.iter().enumerate().map(law).collect::<Result<_, ScenarioError>>()?;
         let mut draws = Draws::new(key, laws, scenario.dispersed());
         draws.groups = draws.groups.and(SIMULATOR);
+        let columns: Vec<Column> = scenario.inputs().collect();
         Ok(Self {
             draws,
             drawing: Drawing::Plain,
             size: scenario.size(),
             own: scenario.own(),
-            columns: scenario.inputs().collect(),
+            shown: vec![true; columns.len()],
+            columns,
             bodies,
             quantities: scenario.quantities(),
             dispersed: scenario.dispersed(),
@@ -63,6 +67,17 @@ impl SimulatorDraws<'_> {
     /// The groups of inputs that are drawn independently of each other.
     pub(crate) fn groups(&self) -> &Groups {
         &self.draws.groups
+    }
+
+    /// The same, without columns of these names in rows.
+    pub(crate) fn hiding(self, names: &[String]) -> Self {
+        let is_shown = |column: &Column| names.iter().all(|name| name != column.name());
+        Self { shown: self.columns.iter().map(is_shown).collect(), ..self }
+    }
+
+    /// What rows have of one for each column.
+    fn shown<T>(&self, all: impl IntoIterator<Item = T>) -> impl Iterator<Item = T> {
+        all.into_iter().zip(&self.shown).filter(|(_, shown)| **shown).map(|(one, _)| one)
     }
 
     /// The same, which draw this.
@@ -133,7 +148,7 @@ impl Simulation for SimulatorDraws<'_> {
     type Worker = Vec<Option<f64>>;
 
     fn columns(&self) -> Vec<Column> {
-        self.own.iter().chain(&self.columns).cloned().collect()
+        self.own.iter().chain(self.shown(&self.columns)).cloned().collect()
     }
 
     fn worker(&self) -> Self::Worker {
@@ -150,7 +165,8 @@ impl Simulation for SimulatorDraws<'_> {
             numbers.clear();
             let failure = self.draw(run, numbers).err();
             let place = self.place(run).into_iter().map(Cell::Integer);
-            rows.push(failure, place.chain(numbers.iter().map(|number| Cell::from(*number))))?;
+            let numbers = self.shown(numbers.iter()).map(|number| Cell::from(*number));
+            rows.push(failure, place.chain(numbers))?;
         }
         Ok(())
     }
