@@ -117,7 +117,7 @@ impl List {
             let law = ScalarLaw::bernoulli(given.probability)
                 .map_err(|e| ScenarioError::field(given.key(&field), e))?;
             let name = format!("{name}_{chance}");
-            self.push([&name, &name, &field], "", 0.0, (law, each), target);
+            self.push([&name, &name, &field], "", 0.0, (law, each, None), target);
             Ok(())
         };
         if let (Some(_), Some(start)) = (d.late_probability, d.start) {

@@ -1,8 +1,6 @@
 //! What is uncertain, as it is put together from a scenario file.
 
-use gyradius_dispersion::{
-    Correlation, CorrelationProblem, JointScalar, LawUnit, ScalarLaw, ScalarLawForm,
-};
+use gyradius_dispersion::{Correlation, CorrelationProblem, JointScalar, LawUnit, ScalarLaw};
 
 use super::{
     ScenarioError,
@@ -71,25 +69,19 @@ impl<T> List<T> {
         self.all.push(Dispersed { column, part_of, given, nominal, law, each, target, change });
     }
 
-    /// A number with a name that ends in its unit, if it has one, the parameter that it is part of, and the place of its law.
+    /// A number with a name that ends in its unit, if it has one, the parameter that it is part of, and the place of its law; with how the
+    /// file says its change from the nominal value, if the law is of that.
     pub(crate) fn push(
         &mut self,
         [name, parameter, given]: [&str; 3],
         unit: &str,
         nominal: f64,
-        (law, each): (ScalarLaw, Each),
+        (law, each, change): (ScalarLaw, Each, Option<Change>),
         target: T,
     ) {
         let column = if unit.is_empty() { name.to_owned() } else { format!("{name}_{unit}") };
-        let (part_of, given, change) = (in_words(parameter), given.to_owned(), None);
+        let (part_of, given) = (in_words(parameter), given.to_owned());
         self.all.push(Dispersed { column, part_of, given, nominal, law, each, target, change });
-    }
-
-    /// That the last number has a law of its change from the nominal value, and how the file says it.
-    fn changes(&mut self, form: &ScalarLawForm, unit: LawUnit) {
-        if let Some(last) = self.all.last_mut() {
-            last.change = Some(Change { form: form.clone(), unit });
-        }
     }
 
     /// A parameter of what stands at a place of the file, and is called by a name.
@@ -148,8 +140,9 @@ impl<T> List<T> {
         let (each, form) = (self.each(field, law.drawn)?, &law.form);
         let law = law::about(form, field, nominal, unit)?;
         positive(field, nominal, &law)?;
-        self.push([&place.name, &place.name, field], place.unit, nominal, (law, each), target);
-        self.changes(form, unit);
+        let (names, change) =
+            ([&*place.name, &place.name, field], Change { form: form.clone(), unit });
+        self.push(names, place.unit, nominal, (law, each, Some(change)), target);
         Ok(())
     }
 
@@ -168,10 +161,8 @@ impl<T> List<T> {
             let (form, each, field) = law.component(&place.field, i);
             let each = self.each(&field, each)?;
             let names = [name.as_str(), &place.name, &field];
-            self.push(names, place.unit, *nominal, (scalar, each), target(i));
-            if let Some(form) = form {
-                self.changes(form, LawUnit::OWN);
-            }
+            let change = form.map(|form| Change { form: form.clone(), unit: LawUnit::OWN });
+            self.push(names, place.unit, *nominal, (scalar, each, change), target(i));
         }
         for (a, b, coefficient) in vector.pairs {
             self.pairs.push((first + a, first + b, coefficient));
@@ -197,7 +188,7 @@ impl<T> List<T> {
             let component = format!("{parameter}_{}", i + 1);
             let name = if laws.len() > 1 { &component } else { &parameter };
             let names = [name.as_str(), &parameter, &given];
-            self.push(names, unit, *nominal, (law.clone(), each), target(i));
+            self.push(names, unit, *nominal, (law.clone(), each, None), target(i));
         }
         Ok(())
     }
