@@ -1,5 +1,7 @@
 //! Which key was meant where one is not known.
 
+use strsim::levenshtein;
+
 /// What is said of an unknown key begins so, and goes on with a list of those that are known.
 const UNKNOWN: &str = "unknown field `";
 
@@ -9,25 +11,10 @@ pub(super) fn with_meant(reason: &str) -> Option<String> {
     let known = rest.split('`').skip(1).step_by(2);
     // A third of its letters: `center` for `centre` are two of six.
     let most = key.chars().count() / 3;
-    let apart = known.map(|known| (changes(key, known), known));
-    let (apart, meant) = apart.min_by_key(|(changes, _)| *changes)?;
+    let apart = known.map(|known| (levenshtein(key, known), known));
+    let (apart, meant) = apart.min_by_key(|(letters, _)| *letters)?;
     let list = rest.strip_prefix(", ").map_or(String::new(), |list| format!(" ({list})"));
     (apart <= most).then(|| format!("{UNKNOWN}{key}`: did you mean `{meant}`?{list}"))
-}
-
-/// How many letters of a word are to be put in, taken out or changed for another word.
-fn changes(from: &str, to: &str) -> usize {
-    let to: Vec<char> = to.chars().collect();
-    let mut row: Vec<usize> = (0..=to.len()).collect();
-    for (i, a) in from.chars().enumerate() {
-        let mut next = vec![i + 1];
-        for (j, b) in to.iter().enumerate() {
-            let (put_in, taken_out) = (next[j] + 1, row[j + 1] + 1);
-            next.push(put_in.min(taken_out).min(row[j] + usize::from(a != *b)));
-        }
-        row = next;
-    }
-    row.last().copied().unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -69,12 +56,12 @@ mod tests {
         /// The number of changes is a distance, and a letter changed is one of them.
         #[test]
         fn changes_are_a_distance(a in "[a-c]{0,8}", b in "[a-c]{0,8}", c in "[a-c]{0,8}", place in 0..8_usize) {
-            prop_assert_eq!(changes(&a, &b), changes(&b, &a));
-            prop_assert_eq!(changes(&a, &b) == 0, a == b);
-            prop_assert!(changes(&a, &c) <= changes(&a, &b) + changes(&b, &c));
+            prop_assert_eq!(levenshtein(&a, &b), levenshtein(&b, &a));
+            prop_assert_eq!(levenshtein(&a, &b) == 0, a == b);
+            prop_assert!(levenshtein(&a, &c) <= levenshtein(&a, &b) + levenshtein(&b, &c));
             let mut other = a.clone();
             other.insert(place.min(a.len()), 'z');
-            prop_assert_eq!(changes(&a, &other), 1);
+            prop_assert_eq!(levenshtein(&a, &other), 1);
         }
     }
 }
