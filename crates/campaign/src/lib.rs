@@ -123,7 +123,7 @@ pub use identity::{Difference, Identity};
 pub use kept::{Kept, KeptError, Rows};
 pub use kept_runs::{KeptColumn, KeptRuns, KeptTexts, KeptValues};
 pub use memory::memory_left;
-pub use number::plain;
+pub use number::{of_percent, plain};
 pub use requirement::{
     Bound, ConvergencePoint, Counting, Distribution, DistributionPoint, Event, FailedRuns,
     Judgement, JudgementError, Judging, Looks, Measured, Requirement, RequirementError, RunBeyond,

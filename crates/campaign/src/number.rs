@@ -1,4 +1,4 @@
-//! Numbers for people, as they are and never in hundreds of digits.
+//! Numbers for people, as they are and never in hundreds of digits, and as people write them.
 
 /// A number in the fewest digits that read back as it: with a power of ten from 1e16 on, and below 1e-9.
 #[must_use]
@@ -8,6 +8,12 @@ pub fn plain(x: f64) -> String {
     } else {
         format!("{x:e}")
     }
+}
+
+/// The share that is nearest to so many per cent, by the digits: a division by 100 would round twice, and 12.3 % might not be 123 of 1000.
+#[must_use]
+pub fn of_percent(percent: f64) -> f64 {
+    format!("{percent}e-2").parse().unwrap_or(percent / 100.0)
 }
 
 #[cfg(test)]

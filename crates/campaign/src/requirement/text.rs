@@ -6,7 +6,7 @@ use super::{
     Bound, Measured, Requirement, RequirementError,
     words::{LEAST_PERCENT, Words},
 };
-use crate::number::plain;
+use crate::number::{of_percent, plain};
 
 /// What a sign begins with.
 const SIGNS: [char; 4] = ['<', '>', '≤', '≥'];
@@ -80,9 +80,8 @@ pub(super) fn write_bounded(
 pub(super) fn share(share: f64) -> String {
     // By the digits, as it is read.
     let percent = format!("{share}e2").parse::<f64>().unwrap_or_default();
-    let text = plain(percent);
-    let reads_back = percent > LEAST_PERCENT && format!("{text}e-2").parse() == Ok(share);
-    if reads_back { format!("{text} %") } else { plain(share) }
+    let reads_back = percent > LEAST_PERCENT && of_percent(percent) == share;
+    if reads_back { format!("{} %", plain(percent)) } else { plain(share) }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! A text that is taken word by word: names of columns, numbers, shares, signs.
 
 use super::RequirementError;
-use crate::number::plain;
+use crate::number::{of_percent, plain};
 
 /// Shares up to this many per cent are written without the sign.
 pub(super) const LEAST_PERCENT: f64 = 1.0;
@@ -101,19 +101,27 @@ impl<'a> Words<'a> {
 
     /// A share, as `99.73 %` or `0.9973`.
     pub(crate) fn share(&mut self) -> Result<f64, RequirementError> {
+        let (number, is_percent) = self.number_of_share()?;
+        Ok(if is_percent { of_percent(number) } else { number })
+    }
+
+    /// The number of a share as it is written, and whether it is in percent.
+    fn number_of_share(&mut self) -> Result<(f64, bool), RequirementError> {
         let number = self
             .number()
             .ok_or_else(|| self.wrong("there must be a share, as 99.73 % or 0.9973"))?;
-        Ok(if self.take("%") { of_percent(number) } else { number })
+        Ok((number, self.take("%")))
     }
 
     /// The share that a requirement asks for. One of at most [`LEAST_PERCENT`] in percent is refused: it is most often one that is meant without.
     pub(super) fn required_share(&mut self) -> Result<f64, RequirementError> {
         let before = self.clone();
-        let share = self.share()?;
-        let mut after = before.clone();
-        let number = after.number().unwrap_or(share);
-        if !(after.take("%") && 0.0 < number && number <= LEAST_PERCENT) {
+        let (number, is_percent) = self.number_of_share()?;
+        if !is_percent {
+            return Ok(number);
+        }
+        let share = of_percent(number);
+        if !(0.0 < number && number <= LEAST_PERCENT) {
             return Ok(share);
         }
         let [itself, hundredth] = [number, share].map(plain);
@@ -132,11 +140,6 @@ impl<'a> Words<'a> {
             Err(self.wrong("there must be “<=” or “>=”"))
         }
     }
-}
-
-/// By the digits, so that 99.73 % is 0.9973 to the bit.
-fn of_percent(number: f64) -> f64 {
-    format!("{number}e-2").parse().unwrap_or(number / 100.0)
 }
 
 fn is_plain(letter: char) -> bool {

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
 
 use crate::{
-    number::plain,
+    number::{of_percent, plain},
     requirement::{Measured, Words},
 };
 
@@ -170,7 +170,7 @@ impl fmt::Display for StoppingRule {
             Self::Decided => f.write_str(DECIDED),
             // By the digits, so that 0.001 is 0.1 % and reads back to the bit.
             Self::Share(within) => match format!("{within}e2").parse::<f64>() {
-                Ok(percent) if format!("{percent}e-2").parse() == Ok(*within) => {
+                Ok(percent) if of_percent(percent) == *within => {
                     write!(f, "{SHARE} {WITHIN} {percent} %")
                 }
                 Ok(_) | Err(_) => write!(f, "{SHARE} {WITHIN} {within}"),

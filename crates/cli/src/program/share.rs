@@ -1,22 +1,17 @@
 //! A share of the runs, as a fraction or in percent.
 
-use std::num::ParseFloatError;
+use gyradius_campaign::of_percent;
 
 /// The number that is nearest to what is written, as 0.05 or 5%.
 pub(crate) fn share(text: &str) -> Result<f64, String> {
     let value = match text.strip_suffix('%') {
-        Some(percent) => of_percent(percent.trim_end()),
+        Some(percent) => percent.trim_end().parse().map(of_percent),
         None => text.parse(),
     };
     match value {
         Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
         _ => Err("it must lie between 0 and 1, or between 0% and 100%".to_owned()),
     }
-}
-
-/// A division by 100 would round twice, and 12.3 % might not be 123 of 1000.
-fn of_percent(text: &str) -> Result<f64, ParseFloatError> {
-    format!("{text}e-2").parse().or_else(|_| text.parse::<f64>().map(|x| x / 100.0))
 }
 
 /// Whether the count is more than this share of all. Both sides are the numbers nearest to what they stand for, so that 29 of 100 are not more than 29 %.
