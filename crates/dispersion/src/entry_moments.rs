@@ -11,6 +11,9 @@ use crate::semidefinite::{Covariance, CovarianceError};
 /// The entries in the order I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃.
 pub(crate) const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
+/// What is left of sums that cancel, as a part of what is summed.
+pub(crate) const OF_SUMS: f64 = 512.0 * f64::EPSILON;
+
 /// A law of attitudes that can take means of real functions.
 pub(crate) trait Expectation {
     fn expect<const N: usize>(
@@ -75,7 +78,6 @@ impl EntryMoments {
     /// and what is left is a part of that, times the largest relative deviation: next to nothing in the small moment of a thin body.
     pub(crate) fn rounding(&self) -> [f64; 6] {
         const OF_DIRECTIONS: f64 = 64.0 * f64::EPSILON;
-        const OF_SUMS: f64 = 512.0 * f64::EPSILON;
         // Of moments below it, relative deviations are rounding themselves.
         const SEEN: f64 = 1e-9;
         let c = self.covariance.diagonal();

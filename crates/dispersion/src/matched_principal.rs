@@ -4,7 +4,7 @@ use gyradius_attitude::RadiallyConstrainedGaussian;
 use gyradius_inertia::{Inertia, InertiaMatrix, PrincipalAxes, RootSecondMoments};
 use nalgebra::{Matrix3, SMatrix, SVector};
 
-use crate::entry_moments::ENTRIES;
+use crate::entry_moments::{ENTRIES, OF_SUMS};
 use crate::named_model::{NamedModel, NoMatch};
 use crate::principal::NAME;
 use crate::{
@@ -161,7 +161,6 @@ fn first_order(
 
 /// The variances that arithmetic may leave of products in principal axes: of those in body axes, and of the sums of the turn.
 fn rounding_of_products(turn: &SMatrix<f64, 6, 6>, moments: &EntryMoments) -> [f64; 3] {
-    const OF_SUMS: f64 = 512.0 * f64::EPSILON;
     let own = SVector::<f64, 6>::from(moments.rounding().map(f64::sqrt));
     let turn = turn.abs();
     let (own, sums) = (turn * own, turn * moments.covariance().abs() * turn.transpose());
