@@ -20,8 +20,8 @@ const SYMBOLS: [(Kind, &[&str]); 3] = [
     (
         Kind::Amount,
         &[
-            "kgs", "gm", "gms", "gr", "lbs", "lbf", "oz", "ozm", "ozf", "kgf", "kp", "kn", "n",
-            "slugs", "slinch", "dyn", "pdl", "cwt",
+            "kgs", "gm", "gms", "gr", "lbf", "oz", "ozm", "ozf", "kgf", "kp", "kn", "n", "slinch",
+            "dyn", "pdl", "cwt",
         ],
     ),
     (Kind::Length, &["dm", "km", "um", "µm", "μm", "yd"]),
