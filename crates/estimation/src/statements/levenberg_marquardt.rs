@@ -201,14 +201,13 @@ mod tests {
     use rand::RngExt;
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 
-    /// |Ax − b|² within a box.
-    struct Boxed {
-        a: DMatrix<f64>,
-        b: DVector<f64>,
-        most: f64,
+    /// Residuals as a function of the unknowns, all of which lie between two bounds.
+    struct Within<F> {
+        residuals: F,
+        bounds: [f64; 2],
     }
 
-    impl Problem for Boxed {
+    impl<F: Fn(&DVector<f64>) -> DVector<f64>> Problem for Within<F> {
         type Point = DVector<f64>;
 
         fn values(&self, point: &DVector<f64>) -> DVector<f64> {
@@ -220,12 +219,25 @@ mod tests {
         }
 
         fn residuals(&self, point: &DVector<f64>) -> DVector<f64> {
-            &self.a * point - &self.b
+            (self.residuals)(point)
         }
 
         fn range(&self, _: &DVector<f64>, _: usize) -> Range {
-            Range { least: 0.0, most: self.most, unit: 1.0 }
+            let [least, most] = self.bounds;
+            Range { least, most, unit: 1.0 }
         }
+    }
+
+    /// |Ax − b|² between zero and a bound.
+    fn boxed(a: DMatrix<f64>, b: DVector<f64>, most: f64) -> impl Problem<Point = DVector<f64>> {
+        Within { residuals: move |x: &DVector<f64>| &a * x - &b, bounds: [0.0, most] }
+    }
+
+    /// The same residuals without bounds.
+    fn free(
+        residuals: impl Fn(&DVector<f64>) -> DVector<f64>,
+    ) -> impl Problem<Point = DVector<f64>> {
+        Within { residuals, bounds: [f64::NEG_INFINITY, f64::INFINITY] }
     }
 
     proptest! {
@@ -242,7 +254,7 @@ mod tests {
         ) {
             let a = DMatrix::from_vec(5, 4, a);
             prop_assume!(a.clone().svd(false, false).singular_values.min() > 0.05);
-            let problem = Boxed { a, b: DVector::from_vec(b), most };
+            let problem = boxed(a, DVector::from_vec(b), most);
             let (x, cost) = least_squares(&problem, DVector::from_row_slice(&start) * most, Effort::FULL);
             prop_assert!(x.iter().all(|x| (0.0..=most).contains(x)));
             for other in &others {
@@ -260,73 +272,24 @@ mod tests {
     #[test]
     fn the_corner_beyond_a_valley_is_found() {
         let a = DMatrix::from_row_slice(2, 2, &[-0.75, -1.0, 0.0, -0.5]);
-        let problem = Boxed { a, b: DVector::from_vec(vec![0.5, -0.25]), most: 0.5 };
+        let problem = boxed(a, DVector::from_vec(vec![0.5, -0.25]), 0.5);
         let (x, cost) = least_squares(&problem, DVector::from_element(2, 0.25), Effort::FULL);
         assert!(x.amax() == 0.0 && cost == 0.3125, "{x} {cost}");
     }
 
-    /// The valley of Rosenbrock (1960, doi:10.1093/comjnl/3.3.175).
-    struct Valley;
-
-    impl Problem for Valley {
-        type Point = DVector<f64>;
-
-        fn values(&self, point: &DVector<f64>) -> DVector<f64> {
-            point.clone()
-        }
-
-        fn at(&self, values: DVector<f64>, _: &DVector<f64>) -> DVector<f64> {
-            values
-        }
-
-        fn residuals(&self, x: &DVector<f64>) -> DVector<f64> {
-            DVector::from_vec(vec![10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0]])
-        }
-
-        fn range(&self, _: &DVector<f64>, _: usize) -> Range {
-            Range { least: f64::NEG_INFINITY, most: f64::INFINITY, unit: 1.0 }
-        }
-    }
-
-    /// The errors of what cannot be had: curved residuals, which are large at the least sum.
-    struct Contradiction {
-        a: DMatrix<f64>,
-        b: DVector<f64>,
-    }
-
-    impl Problem for Contradiction {
-        type Point = DVector<f64>;
-
-        fn values(&self, point: &DVector<f64>) -> DVector<f64> {
-            point.clone()
-        }
-
-        fn at(&self, values: DVector<f64>, _: &DVector<f64>) -> DVector<f64> {
-            values
-        }
-
-        fn residuals(&self, point: &DVector<f64>) -> DVector<f64> {
-            (&self.a * point).map(|x| x + x * x) - &self.b
-        }
-
-        fn range(&self, _: &DVector<f64>, _: usize) -> Range {
-            Range { least: f64::NEG_INFINITY, most: f64::INFINITY, unit: 1.0 }
-        }
-    }
-
-    /// Of 500 problems, those whose search ends where more can be had downhill.
+    /// Of 500 problems of what cannot be had, with curved residuals that are large at the least sum, those whose search ends where more can be
+    /// had downhill.
     fn unfinished(effort: Effort) -> usize {
         const WHOLE: Effort = Effort { steps: 5000, worth: 0.0, curved: false };
         let mut rng = ChaCha8Rng::seed_from_u64(3);
-        let problems = std::iter::repeat_with(|| Contradiction {
-            a: DMatrix::from_fn(8, 5, |_, _| rng.random_range(-1.0..1.0)),
-            b: DVector::from_fn(8, |_, _| rng.random_range(-3.0..3.0)),
-        });
-        let is_unfinished = |problem: &Contradiction| {
-            let (x, cost) = least_squares(problem, DVector::zeros(5), effort);
-            cost > 1.001 * least_squares(problem, x, WHOLE).1
+        let mut is_unfinished = || {
+            let a = DMatrix::from_fn(8, 5, |_, _| rng.random_range(-1.0..1.0));
+            let b = DVector::from_fn(8, |_, _| rng.random_range(-3.0..3.0));
+            let problem = free(|x| (&a * x).map(|x| x + x * x) - &b);
+            let (x, cost) = least_squares(&problem, DVector::zeros(5), effort);
+            cost > 1.001 * least_squares(&problem, x, WHOLE).1
         };
-        problems.take(500).filter(is_unfinished).count()
+        (0..500).filter(|_| is_unfinished()).count()
     }
 
     /// Large residuals are brought down to where the sum is flat, which Gauss's and Newton's steps do not do alone.
@@ -337,9 +300,11 @@ mod tests {
         assert!(4 * with < without && with < 5, "{with} and {without} of 500");
     }
 
+    /// The valley of Rosenbrock (1960, doi:10.1093/comjnl/3.3.175).
     #[test]
     fn a_narrow_valley_is_followed_to_its_end() {
-        let (x, cost) = least_squares(&Valley, DVector::from_vec(vec![-1.2, 1.0]), Effort::FULL);
+        let valley = free(|x| DVector::from_vec(vec![10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0]]));
+        let (x, cost) = least_squares(&valley, DVector::from_vec(vec![-1.2, 1.0]), Effort::FULL);
         assert!(cost < 1e-9 && (x[0] - 1.0).abs() < 1e-4, "{x} {cost}");
     }
 }
