@@ -97,8 +97,8 @@ impl Column {
                 CLEARANCE_NOTE,
                 Text,
                 "Why there is no clearance (all outlines are mated; the search failed), or not one of the \
-                 whole coast (a body turns too far to be followed), or that it, or that the bodies do not touch before the \
-                 last release, is not proven (the search was given up), or that the outlines come nearer before the last release, or that some are mated and do not \
+                 whole coast (a body turns too far to be followed), or that it is not proven, or not proven that the bodies \
+                 stay apart before the last release (the search was given up), or that the outlines come nearer before the last release, or that some are mated and do not \
                  part; all that hold, with `; ` between them; none if there is nothing to say.",
             )
             .with_kinds(),

@@ -291,7 +291,7 @@ impl ClearanceNote {
             Self::Partial { .. } => "a body turns too far to be followed to the end of the coast",
             Self::NotProven { .. } => "the search was given up before the clearance was proven",
             Self::NotProvenBefore { .. } => {
-                "the search before the last release was given up before it was proven"
+                "the search before the last release was given up before the clearance there was proven"
             }
             Self::NearerBefore { .. } => {
                 "the outlines come nearer before the last release than after it"

@@ -78,10 +78,10 @@ pub(crate) enum Command {
     /// scenario disperses, in the columns of the run table. A study of the scenario has the same values, to the
     /// bit. Any number of runs takes the same memory.
     ///
-    /// Of a file of laws, as `gyradius model` and `gyradius fit` write it with -o or as JSON: one row a draw, with mass, mass centre, inertia and
-    /// principal axes of its bodies, in the columns that a scenario has for them.
+    /// A file of laws, as `gyradius model` and `gyradius fit` write it with -o or as JSON, gives one row a draw, with mass, mass centre, inertia
+    /// and principal axes of its bodies, in the columns that a scenario has for them.
     ///
-    /// Of a robot: copies in which only the mass, mass centre and inertia of links differ, each of which some body has,
+    /// A robot gives copies in which only the mass, mass centre and inertia of links differ, each of which some body has,
     /// or a table of these.
     #[command(after_help = DRAW_EXAMPLES)]
     Draw(DrawArgs),
