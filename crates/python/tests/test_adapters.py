@@ -224,6 +224,86 @@ def test_mujoco_keeps_its_state_and_computes_anew_what_follows_from_it():
             np.testing.assert_array_equal(getattr(data, name), getattr(other, name), err_msg=name)
 
 
+def shapes(rng: np.random.Generator) -> str:
+    """The geoms of a body, from one to seven, of which some touch nothing."""
+    geoms = []
+    for _ in range(rng.integers(1, 8)):
+        kind = rng.choice(["box", "capsule", "sphere", "ellipsoid"])
+        size, place, turn = (" ".join(map(str, numbers)) for numbers in (
+            rng.uniform(0.02, 0.3, 3), rng.normal(size=3) * 0.5, rng.normal(size=4)
+        ))
+        touches = int(rng.uniform() < 0.8)
+        geoms.append(
+            f'<geom type="{kind}" size="{size}" pos="{place}" quat="{turn}" contype="{touches}" conaffinity="{touches}" '
+            f'margin="{rng.uniform(0.0, 0.02)}"/>'
+        )
+    return "".join(geoms)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_mujoco_finds_the_contacts_and_rays_of_drawn_bodies_with_any_geoms(seed: int):
+    mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed")
+    import with_mujoco
+
+    rng = np.random.default_rng(seed)
+    stated = (
+        '<inertial pos=".1 -.2 .3" mass="2" fullinertia=".02 .05 .06 .001 -.002 .003"/>',
+        '<inertial pos=".1 0 .5" mass="2" quat="1 2 3 4" diaginertia=".02 .05 .06"/>',
+        "",
+    )
+    names = ["one", "two", "three"]
+    parts = [(name, rng.choice(stated), shapes(rng)) for name in names]
+
+    def compiled(inertials: list[str]):
+        """The model with these inertias."""
+        bodies = "".join(
+            f'<body name="{name}" pos="{place} 0 0"><joint type="ball"/><joint type="slide"/>{inertial}{geoms}</body>'
+            for place, ((name, _, geoms), inertial) in enumerate(zip(parts, inertials))
+        )
+        return mujoco.MjModel.from_xml_string(
+            f'<mujoco><worldbody><geom type="plane" size="9 9 1" pos="0 0 -.8"/>{bodies}</worldbody></mujoco>'
+        )
+
+    def seen(model, data) -> tuple:
+        """The contacts of a state, and what rays meet."""
+        mujoco.mj_forward(model, data)
+        contacts = sorted((*contact.geom, contact.dist) for contact in data.contact)
+        rays = np.random.default_rng(seed).normal(size=(100, 3))
+        met, far = np.empty((100, 1), np.int32), np.empty((100, 1))
+        more = [None] if "normal" in mujoco.mj_multiRay.__doc__ else []
+        mujoco.mj_multiRay(
+            model, data, np.array([[0.0], [2.0], [1.0]]), rays.reshape(-1, 1), None, 1, -1, met, far, *more, 100, 99.0
+        )
+        return contacts, met, far
+
+    model = compiled([inertial for _, inertial, _ in parts])
+    data = mujoco.MjData(model)
+    drawn = draws({name: with_mujoco.nominal(model, name) for name in names})
+    number = 0
+    for index in range(DRAWS):
+        with_mujoco.write(model, mujoco.MjData(model), drawn, index)
+        fields = zip(*(getattr(model, field)[1:].tolist() for field in ("body_ipos", "body_mass", "body_iquat", "body_inertia")))
+        words = 'pos="{}" mass="{}" quat="{}" diaginertia="{}"'
+        fresh = compiled([f"<inertial {words}/>".format(*one).translate(str.maketrans("", "", "[],")) for one in fields])
+        # The box around all of a body; those in it may be others, for the compiler divides the geoms along its longest side.
+        roots = model.body_bvhadr[model.body_bvhnum > 0]
+        np.testing.assert_allclose(model.bvh_aabb[roots], fresh.bvh_aabb[roots], rtol=1e-9, atol=1e-9)
+        other = mujoco.MjData(fresh)
+        for _ in range(8):
+            data.qpos[:] = other.qpos[:] = rng.normal(size=model.nq)
+            found = seen(model, data)
+            model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_MIDPHASE
+            everything = seen(model, data)
+            model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_MIDPHASE)
+            for expected in (everything, seen(fresh, other)):
+                assert [contact[:2] for contact in found[0]] == [contact[:2] for contact in expected[0]]
+                np.testing.assert_allclose(found[0], expected[0], atol=1e-9)
+                np.testing.assert_array_equal(found[1], expected[1])
+                np.testing.assert_allclose(found[2], expected[2], atol=1e-9)
+            number += len(found[0])
+    assert number > 40
+
+
 def test_mujoco_refuses_a_body_that_is_compiled_as_simple():
     mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed")
     import with_mujoco

@@ -28,6 +28,7 @@ FIELDS = (
     "actuator_acc0",
     "cam_poscom0",
     "light_poscom0",
+    # Which MuJoCo 3 derives and uses; MuJoCo 4 does neither.
     "stat.meaninertia",
 )
 

@@ -38,11 +38,11 @@ def write(model: mujoco.MjModel, scratch: mujoco.MjData, draws: dict[str, gyradi
     ValueError
         If a body is compiled as simple, so that its mass centre cannot leave its origin: see `compile_movable`.
     """
-    for name, bodies in draws.items():
-        body = model.body(name).id
+    drawn = {model.body(name).id: bodies for name, bodies in draws.items()}
+    for body, bodies in drawn.items():
         if model.body_simple[body]:
             raise ValueError(
-                f"body {name}: it is compiled as simple, so its mass centre cannot move: see compile_movable"
+                f"body {model.body(body).name}: it is compiled as simple, so its mass centre cannot move: see compile_movable"
             )
         for field, value in bodies[index].to_mujoco()._asdict().items():
             getattr(model, field)[body] = value
@@ -51,6 +51,34 @@ def write(model: mujoco.MjModel, scratch: mujoco.MjData, draws: dict[str, gyradi
         model.geom_sameframe[model.geom_bodyid == body] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE
         model.site_sameframe[model.site_bodyid == body] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE
     mujoco.mj_setConst(model, scratch)
+    fit_boxes(model, scratch, np.array(list(drawn), dtype=int))
+
+
+def fit_boxes(model: mujoco.MjModel, data: mujoco.MjData, bodies: np.ndarray) -> None:
+    """Fit the bounding boxes of some bodies anew, by which MuJoCo passes over geoms far from a contact or from a ray.
+
+    They stand in the frame of the inertia. MuJoCo 3.9.0 leaves them in the one that was compiled, and then contacts are lost; 4.0.0 fits
+    them itself. `data` has any configuration of the model.
+    """
+    counts = model.body_bvhnum[bodies]
+    starts = np.repeat(np.cumsum(counts) - counts, counts)
+    owners = np.repeat(bodies, counts)
+    nodes = model.body_bvhadr[owners] + np.arange(len(starts)) - starts
+    geoms, depths = model.bvh_nodeid[nodes], model.bvh_depth[nodes]
+    is_leaf = geoms >= 0
+    geoms, of = geoms[is_leaf], owners[is_leaf]
+    axes = data.ximat[of].reshape(-1, 3, 3).transpose(0, 2, 1)
+    turns = axes @ data.geom_xmat[geoms].reshape(-1, 3, 3)
+    middle = axes @ (data.geom_xpos[geoms] - data.xipos[of])[:, :, None] + turns @ model.geom_aabb[geoms, :3, None]
+    half = np.abs(turns) @ model.geom_aabb[geoms, 3:, None]
+    # How far the boxes reach up and down each axis: what holds two others, as far as the farther one.
+    reach = np.empty((len(nodes), 2, 3))
+    reach[is_leaf] = np.stack([half + middle, half - middle], axis=1)[..., 0]
+    for depth in reversed(range(depths.max(initial=0))):
+        parents = np.flatnonzero(~is_leaf & (depths == depth))
+        reach[parents] = reach[starts[parents, None] + model.bvh_child[nodes[parents]]].max(axis=1)
+    up, down = reach[:, 0], reach[:, 1]
+    model.bvh_aabb[nodes] = 0.5 * np.hstack([up - down, up + down])
 
 
 def apply(model: mujoco.MjModel, data: mujoco.MjData, draws: dict[str, gyradius.MassProperties], index: int) -> None:
