@@ -27,6 +27,17 @@ Size: TypeAlias = Union[Whole, Sequence[Whole], None]
 
 ORDERS = ("xyzw", "wxyz")
 
+NATURAL: tuple[str, ...] = tuple(_core.COLUMNS)
+
+FORMS: dict[str, tuple[str, ...]] = {
+    "linear": (NATURAL[0], *(f"first_moment_{axis}_kg_m" for axis in (1, 2, 3)), *NATURAL[4:]),
+    "natural": NATURAL,
+}
+"""What the ten numbers of a body are called in tables, in their order: m, m c and the inertia about the origin, or m, c and that about c."""
+
+LOG_CHOLESKY = ("α", "d₁", "d₂", "d₃", "s₁₂", "s₂₃", "s₁₃", "t₁", "t₂", "t₃")
+"""What the ten log-Cholesky coordinates are called."""
+
 SINGLE = np.dtype(np.float32)
 """Floats of 32 bits."""
 
@@ -66,23 +77,34 @@ def frozen(array: A) -> A:
     return array.view()
 
 
-def unmasked(name: str, value: Any) -> None:
-    """Refuses arrays of which some entries are masked: NumPy would take what stands behind the mask."""
+def unmasked(name: str, value: Any, *, of_bodies: bool = False) -> None:
+    """Refuses what NumPy would make wrong numbers of: masked entries, of which it takes what stands behind the mask, and, unless bodies are
+    asked for, bodies, of which it takes the ten numbers for any others."""
     if isinstance(value, (list, tuple)):
         for one in value:
             # Most are numbers, and there may be millions of them.
             if not isinstance(one, (float, int)):
-                unmasked(name, one)
+                unmasked(name, one, of_bodies=of_bodies)
     elif isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
         raise ValueError(f"{name}: some of its entries are masked")
+    elif not of_bodies and getattr(type(value), "__array_ufunc__", value) is None:
+        # By which a type says to NumPy that its objects are no arrays to compute with.
+        raise ValueError(f"{name}: it must be numbers, not {type(value).__name__}")
 
 
-def own_numbers(name: str, value: ArrayLike) -> NDArray[Any]:
+def own_numbers(name: str, value: ArrayLike, *, of_bodies: bool = False) -> NDArray[Any]:
     """The value as an array of real numbers of the type that it has."""
-    unmasked(name, value)
+    unmasked(name, value, of_bodies=of_bodies)
     try:
         array = np.asarray(value)
-    except (TypeError, ValueError) as error:
+        if array.dtype == object and not isinstance(value, np.ndarray):
+            # NumPy makes objects of the numbers of tables whose columns may lack entries.
+            kinds = set(map(type, array.flat)) or {float}
+            strange = [kind for kind in kinds if not issubclass(kind, (float, int, np.floating, np.integer))]
+            if strange:
+                raise TypeError(f"it has a {strange[0].__name__}")
+            array = array.astype(np.result_type(*kinds))
+    except (TypeError, ValueError, OverflowError) as error:
         raise ValueError(f"{name}: it must be numbers: {error}") from None
     if array.dtype.kind not in "biufc":
         raise ValueError(f"{name}: it must be numbers, not {array.dtype}")
@@ -96,18 +118,19 @@ def is_single(array: NDArray[Any]) -> bool:
     return array.dtype.kind == SINGLE.kind and array.dtype.itemsize == SINGLE.itemsize
 
 
-def numbers(name: str, value: ArrayLike) -> NDArray[np.float64]:
+def numbers(name: str, value: ArrayLike, *, of_bodies: bool = False) -> NDArray[np.float64]:
     """The value as an array of aligned 64-bit floats, without a copy where it is one."""
-    array = own_numbers(name, value)
+    array = own_numbers(name, value, of_bodies=of_bodies)
     # What stands at odd addresses, as a field of packed records does, the compiled part cannot read.
     return np.require(array.astype(np.float64, copy=False), requirements="A")
 
 
-def rows(name: str, value: ArrayLike, tail: tuple[int, ...]) -> tuple[NDArray[np.float64], tuple[int, ...]]:
-    """An array of shape (..., *tail) as rows, and what the dots stand for."""
-    if tail == (10,):
-        own_order(name, value)
-    array = numbers(name, value)
+def rows(
+    name: str, value: ArrayLike, tail: tuple[int, ...], *, order: Sequence[str] = NATURAL, of_bodies: bool = False
+) -> tuple[NDArray[np.float64], tuple[int, ...]]:
+    """An array of shape (..., *tail) as rows, and what the dots stand for; of numbers that are called so, if they have names of ours."""
+    own_order(name, value, order)
+    array = numbers(name, value, of_bodies=of_bodies)
     if array.shape[array.ndim - len(tail) :] != tail or array.ndim < len(tail):
         wanted = ", ".join(["...", *map(str, tail)])
         raise ValueError(f"{name}: its shape is {array.shape}, and it must be ({wanted})")
@@ -115,23 +138,42 @@ def rows(name: str, value: ArrayLike, tail: tuple[int, ...]) -> tuple[NDArray[np
     return np.ascontiguousarray(array).reshape(-1, int(np.prod(tail))), lead
 
 
-def own_order(name: str, value: ArrayLike) -> None:
-    """Refuses a table of bodies whose columns stand in another order."""
-    named = names_of(value)
-    if named is not None and set(named) == set(_core.COLUMNS) and named != list(_core.COLUMNS):
-        raise ValueError(
-            f"{name}: its columns must be in the order of gyradius.COLUMNS, as in table[list(gyradius.COLUMNS)]"
-        )
+def own_order(name: str, value: ArrayLike, order: Sequence[str] = NATURAL) -> None:
+    """Refuses numbers whose names are those of the ten numbers of a body, if they are others or stand in another order."""
+    for named in names_of(value):
+        if not set(named) <= set(FORMS["natural"]) | set(FORMS["linear"]):
+            continue
+        strange = [one for one in named if one not in order]
+        if strange:
+            raise ValueError(f"{name}: {strange[0]} is none of its numbers, which are {', '.join(order)}")
+        right = [one for one in order if one in named]
+        if named != right:
+            known = "gyradius.COLUMNS, as in table[list(gyradius.COLUMNS)]" if right == list(NATURAL) else ", ".join(right)
+            raise ValueError(f"{name}: its columns must be in the order of {known}")
 
 
-def names_of(value: Any) -> list[str] | None:
-    """The names of the columns of a table, of pandas, polars or Arrow, or of the numbers of one of its rows, where they have names."""
-    for names in ("column_names", "columns", "index"):
-        found = getattr(value, names, None)
-        # A list has a method `index`, and the columns of some tables are their values.
-        if found is not None and not callable(found) and all(isinstance(one, str) for one in found):
-            return list(found)
-    return None
+def told_form(value: Any) -> str | None:
+    """Which ten numbers of bodies these are by their names, if only one form has numbers of such names."""
+    named = {one for names in names_of(value) for one in names}
+    told = [form for form, other in (("linear", "natural"), ("natural", "linear")) if named & set(FORMS[form]) - set(FORMS[other])]
+    return told[0] if len(told) == 1 else None
+
+
+def same_names(**values: Any) -> None:
+    """Refuses a mean and a covariance, by their names, whose numbers have names of which some are others or stand in another order."""
+    found = [(name, named) for name, value in values.items() for named in names_of(value)]
+    for name, named in found:
+        first, expected = found[0]
+        if named != expected:
+            raise ValueError(f"{name}: its numbers are called {', '.join(named)}, and those of {first} {', '.join(expected)}")
+
+
+def names_of(value: Any) -> list[list[str]]:
+    """The names of the columns of a table, of pandas, polars or Arrow, and of its rows, or of the numbers of one row, where they have names."""
+    found = (getattr(value, names, None) for names in ("column_names", "columns", "index"))
+    # A list has a method `index`, and the columns of some tables are their values.
+    given = (list(one) for one in found if isinstance(one, Iterable) and not callable(one))
+    return [named for named in given if all(isinstance(one, str) for one in named)]
 
 
 def together(*arrays: tuple[str, ArrayLike, tuple[int, ...]]) -> tuple[list[NDArray[np.float64]], tuple[int, ...]]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import attitudes, check_order, numbers, ordered, out
+from gyradius._arrays import attitudes, check_order, numbers, ordered, out, same_names
 from gyradius._law import Fit, Law, known, make, nested, one_attitude, short, vector
 from gyradius._rng import draws_of
 
@@ -116,6 +116,7 @@ def radially_constrained_gaussian(mean: ArrayLike, cov: ArrayLike, *, order: str
     order : {"xyzw", "wxyz"}
         Scalar last, or first.
     """
+    same_names(mean=mean, cov=cov)
     matrix, first = numbers("cov", cov), check_order(order)
     if matrix.shape == (4, 4) and first:
         matrix = matrix[np.ix_([1, 2, 3, 0], [1, 2, 3, 0])]
@@ -136,6 +137,7 @@ def small_rotations(mean: ArrayLike, cov: ArrayLike, *, order: str = "xyzw") -> 
     UserWarning
         A deviation of the rotations is more than 5 % below what is asked for.
     """
+    same_names(cov=cov)
     law = make(AttitudeLaw, "of_small_rotations", one_attitude("mean", mean, order), nested("cov", cov, 3))
     matrix = numbers("cov", cov)
     if matrix.trace() < SMALL**2:
@@ -159,6 +161,7 @@ def bingham(precision: ArrayLike, *, order: str = "xyzw") -> AttitudeLaw:
 
 def fisher_bingham(precision: ArrayLike, linear: ArrayLike, *, order: str = "xyzw") -> AttitudeLaw:
     """The Fisher-Bingham law, with density ∝ exp(-½ qᵀ P q + bᵀ q), P of shape (4, 4) and b of shape (4,)."""
+    same_names(precision=precision, linear=linear)
     matrix, slope, first = numbers("precision", precision), numbers("linear", linear), check_order(order)
     if matrix.shape == (4, 4) and slope.shape == (4,) and first:
         matrix, slope = matrix[np.ix_([1, 2, 3, 0], [1, 2, 3, 0])], slope[[1, 2, 3, 0]]

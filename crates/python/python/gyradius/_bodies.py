@@ -14,6 +14,8 @@ import numpy as np
 
 from gyradius import _core
 from gyradius._arrays import (
+    LOG_CHOLESKY,
+    NATURAL,
     SINGLE,
     attitudes,
     flag,
@@ -35,7 +37,7 @@ from gyradius._inertia import is_realizable, of_rounded, rounding
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-COLUMNS: tuple[str, ...] = tuple(_core.COLUMNS)
+COLUMNS: tuple[str, ...] = NATURAL
 """What the ten numbers of a body are called, in their order; the last six are in kg·m²."""
 
 CELL = np.dtype((np.void, 80))
@@ -106,7 +108,7 @@ class MassProperties:
         object.__setattr__(self, "_array", frozen(array))
 
     @classmethod
-    def of(cls, array: ArrayLike) -> MassProperties:
+    def of(cls, array: MassProperties | ArrayLike) -> MassProperties:
         """The bodies of an array of shape (..., 10), in the order of `gyradius.COLUMNS`."""
         bodies, lead = body_rows("array", array)
         return cls._of(bodies.copy().reshape(*lead, 10))
@@ -145,7 +147,7 @@ class MassProperties:
     @classmethod
     def from_log_cholesky(cls, coordinates: ArrayLike) -> MassProperties:
         """The bodies of log-Cholesky coordinates of shape (..., 10): see `log_cholesky`."""
-        flat, lead = rows("coordinates", coordinates, (10,))
+        flat, lead = rows("coordinates", coordinates, (10,), order=LOG_CHOLESKY)
         return cls._of(_core.body_from_log_cholesky(flat).reshape(*lead, 10))
 
     @property
@@ -214,17 +216,22 @@ class MassProperties:
 
     def translated(self, by: ArrayLike) -> MassProperties:
         """The bodies moved by (..., 3) in m; the axes stay."""
-        return self.transformed((0.0, 0.0, 0.0, 1.0), by)
+        return self._posed((0.0, 0.0, 0.0, 1.0), "by", by, "xyzw")
 
     def rotated(self, rotation: ArrayLike, *, order: str = "xyzw") -> MassProperties:
         """The bodies turned about the origin by quaternions (..., 4), or a `scipy.spatial.transform.Rotation`."""
-        return self.transformed(rotation, (0.0, 0.0, 0.0), order=order)
+        return self._posed(rotation, "translation", (0.0, 0.0, 0.0), order)
 
     def transformed(self, rotation: ArrayLike, translation: ArrayLike, *, order: str = "xyzw") -> MassProperties:
         """The bodies turned about the origin and then moved: what they are in a frame in which theirs has this pose."""
+        return self._posed(rotation, "translation", translation, order)
+
+    def _posed(self, rotation: ArrayLike, name: str, translation: ArrayLike, order: str) -> MassProperties:
         turns, shape = attitudes("rotation", rotation, order)
-        poses = together(("rotation", turns.reshape(*shape, 4), (4,)), ("translation", translation, (3,)))
-        (turn, move), lead = poses
+        (turn, move), lead = together(("rotation", turns.reshape(*shape, 4), (4,)), (name, translation, (3,)))
+        strange = move[~np.isfinite(move).all(axis=1)]
+        if len(strange):
+            raise ValueError(f"{name} = {strange[0].tolist()}: it must be finite")
         pose = np.concatenate([turn, move], axis=1).reshape(*lead, 7)
         (bodies, pose), lead = together(("bodies", self._array, (10,)), ("pose", pose, (7,)))
         return self._of(_core.body_transform(bodies, pose).reshape(*lead, 10))
@@ -488,7 +495,7 @@ def body_rows(name: str, bodies: MassProperties | ArrayLike) -> tuple[NDArray[np
     """The ten numbers of bodies as rows, of floats of 32 bits with what `of_rounded` makes of the inertias, and the shape of the bodies."""
     # An array has no names any more.
     own_order(name, bodies)
-    given = own_numbers(name, bodies)
+    given = own_numbers(name, bodies, of_bodies=True)
     flat, lead = rows(name, given, (10,))
     if is_single(given):
         rounded = of_rounded(flat[:, MATRIX].reshape(-1, 3, 3))

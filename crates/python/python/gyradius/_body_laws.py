@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import form, listed, numbers, out, real, rows, text, three
+from gyradius._arrays import LOG_CHOLESKY, form, listed, numbers, out, real, rows, same_names, text, three
 from gyradius._attitude_laws import AttitudeLaw
 from gyradius._bodies import MassProperties, Region, body_rows
 from gyradius._inertia_laws import InertiaLaw
@@ -138,7 +138,9 @@ class MassPropertiesLaw(LawOfBodies):
         See `MassProperties.log_cholesky` for the coordinates.
         """
         coordinates = mean.log_cholesky if isinstance(mean, MassProperties) else mean
-        return make(MassPropertiesLaw, "log_cholesky", vector("mean", coordinates, 10), Matrix.of("cov", cov, (10, 10)))
+        same_names(mean=coordinates, cov=cov)
+        centre = vector("mean", coordinates, 10, order=LOG_CHOLESKY)
+        return make(MassPropertiesLaw, "log_cholesky", centre, Matrix.of("cov", cov, (10, 10), order=LOG_CHOLESKY))
 
     @staticmethod
     def maximum_entropy(
@@ -191,7 +193,7 @@ class MassPropertiesLaw(LawOfBodies):
         A mass that does not scatter, and a coordinate of the mass centre that does not, are left out of dm d³c: two laws can be
         compared by it only if the same numbers scatter in both. A `ValueError` if the law has no density that is known.
         """
-        flat, lead = rows("bodies", bodies, (10,))
+        flat, lead = rows("bodies", bodies, (10,), of_bodies=True)
         return out(known(self, "density", self._core.ln_density(flat)), lead)
 
     @property

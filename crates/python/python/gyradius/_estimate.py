@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 
 from gyradius import _core
+from gyradius._arrays import FORMS, same_names, told_form
 from gyradius._bodies import MassProperties
 from gyradius._body_laws import MassPropertiesLaw
 from gyradius._law import Matrix, make, vector
@@ -45,23 +46,36 @@ class Estimate(NamedTuple):
     """The same of this law."""
 
 
-def from_estimate(phi: ArrayLike, cov: ArrayLike, *, form: Literal["linear", "natural"] = "linear") -> Estimate:
+SAID = {"linear": "m, m c, and the inertia about the origin", "natural": "mass, mass centre, and the inertia about it"}
+"""Which numbers each form has."""
+
+
+def from_estimate(phi: MassProperties | ArrayLike, cov: ArrayLike, *, form: Literal["linear", "natural"] = "linear") -> Estimate:
     """The laws of bodies with the mean and covariance of an estimate, as nearly as any have them.
 
     Parameters
     ----------
-    phi : array_like, shape (10,)
-        The estimate; it may be that of no body.
+    phi : array_like, shape (10,), or MassProperties
+        The estimate; it may be that of no body. A `MassProperties` is natural.
     cov : array_like, shape (10, 10)
         Its covariance.
     form : {"linear", "natural"}
         ``"linear"``: m, m c, and the inertia about the origin, as identification gives them. ``"natural"``: mass, mass centre, and
-        the inertia about it.
+        the inertia about it. Where phi and cov have names, such as those of `gyradius.COLUMNS`, what contradicts this form, and what stands in
+        another order than the rest, is refused.
     """
     if not isinstance(form, str) or form not in ("linear", "natural"):
         raise ValueError(f'form = {form!r}: it must be "linear" or "natural"')
-    covariance = np.array(Matrix.of("cov", cov, (10, 10)))
-    nearest, moved, joint, log_cholesky = _core.from_estimate(vector("phi", phi, 10), covariance, form == "linear")
+    of_bodies = isinstance(phi, MassProperties)
+    for name, told in (("phi", "natural" if of_bodies else told_form(phi)), ("cov", told_form(cov))):
+        if told is not None and told != form:
+            raise ValueError(f'{name}: its numbers are {SAID[told]}: these need form="{told}", and form = "{form}"')
+    if isinstance(phi, MassProperties):
+        phi = phi.array
+    same_names(phi=phi, cov=cov)
+    covariance = np.array(Matrix.of("cov", cov, (10, 10), order=FORMS[form]))
+    given = vector("phi", phi, 10, order=FORMS[form])
+    nearest, moved, joint, log_cholesky = _core.from_estimate(given, covariance, form == "linear")
     laws: list[tuple[MassPropertiesLaw | None, dict[str, Any] | None]] = []
     laws.append((None, None) if joint is None else (make(MassPropertiesLaw, "joint", joint[0]), json.loads(joint[1])))
     if log_cholesky is None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import form, is_single, out, own_numbers, rows, text, three
+from gyradius._arrays import form, is_single, out, own_numbers, rows, same_names, text, three
 from gyradius._attitude_laws import AttitudeLaw
 from gyradius._inertia import of_rounded
 from gyradius._law import Fit, LawOfBodies, Matrix, known, make, of_kind, picture, short, vector
@@ -83,6 +83,7 @@ class InertiaLaw(LawOfBodies):
         `correlated-entries` has them, and `log-cholesky` where such a law is found: of the widest spreads none is, and a `RuntimeWarning`
         tells of the law to first order that is taken in its place. What the other kinds have is seen in `mean` and `cov`.
         """
+        same_names(mean=mean, cov=cov)
         sought = vector("mean", mean, 6)
         law = make(InertiaLaw, "matched", text("kind", kind), sought, Matrix.of("cov", cov, (6, 6)))
         if kind == "log-cholesky":

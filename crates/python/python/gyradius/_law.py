@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import attitudes, rows
+from gyradius._arrays import NATURAL, attitudes, rows
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -123,16 +124,16 @@ class Matrix(tuple):  # type: ignore[type-arg]
     __slots__ = ()
 
     @classmethod
-    def of(cls, name: str, value: ArrayLike, shape: tuple[int, ...]) -> Matrix:
-        flat, lead = rows(name, value, shape)
+    def of(cls, name: str, value: ArrayLike, shape: tuple[int, ...], *, order: Sequence[str] = NATURAL) -> Matrix:
+        flat, lead = rows(name, value, shape, order=order)
         if lead != ():
             raise ValueError(f"{name}: its shape is {np.shape(value)}, and it must be {shape}")
         return cls(map(tuple, flat.reshape(shape).tolist()))
 
 
-def vector(name: str, value: ArrayLike, size: int) -> tuple[float, ...]:
-    """One vector of so many numbers."""
-    flat, lead = rows(name, value, (size,))
+def vector(name: str, value: ArrayLike, size: int, *, order: Sequence[str] = NATURAL) -> tuple[float, ...]:
+    """One vector of so many numbers, which are called so, if they have names of ours."""
+    flat, lead = rows(name, value, (size,), order=order)
     if lead != ():
         raise ValueError(f"{name}: its shape is {np.shape(value)}, and it must be ({size},)")
     return tuple(flat[0].tolist())
