@@ -113,6 +113,7 @@ def test_correlations_may_be_whatever_gives_pairs(way: Callable[[list[Any]], Any
         {},
         np.array([("mass", "shape1", 0.6)], dtype=object),
         np.array(3),
+        BODY,
         [("mass", "shape1")],
         ["abc"],
         [("mass", "shape1", "0.6")],

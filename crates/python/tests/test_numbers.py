@@ -127,6 +127,46 @@ def test_bodies_are_taken_as_their_numbers(label: str, name: str) -> None:
         assert repr(function(**{**given, name: list(MANY)})) == repr(function(**{**given, name: MANY.array}))
 
 
+@pytest.mark.parametrize(("label", "name"), [(label, name) for label, name, _ in TAKERS])
+@pytest.mark.parametrize("wrong", ["x", "1.5", b"x", 1j, {}, object(), [[1.0], [1.0, 2.0]], np.ma.masked_array([1.0, 2.0, 3.0], [0, 1, 0])])
+def test_what_is_no_number_is_named_as_it_was_given(label: str, name: str, wrong: Any) -> None:
+    function, given = GOOD[label]
+    with pytest.raises(ValueError, match=f"^{name}( = .*)?: "):
+        function(**{**given, name: wrong})
+
+
+@pytest.mark.parametrize("wrong", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("place", range(3))
+@pytest.mark.parametrize(
+    ("label", "name"),
+    [("MassProperties.translated", "by"), ("MassProperties.transformed", "translation"), ("box", "middle"), ("box", "sides"),
+     ("ellipsoid", "middle"), ("ellipsoid", "semi_axes")],
+)
+def test_places_and_lengths_that_are_not_finite_are_named(label: str, name: str, place: int, wrong: float) -> None:
+    function, given = GOOD[label]
+    for value in (wrong, -1.0, 0.0) if name in ("sides", "semi_axes") else (wrong,):
+        three = np.array([1.0, 2.0, 3.0])
+        three[place] = value
+        with pytest.raises(ValueError, match=rf"^{name} = \[.*{value}.*\]: (it|each) must be (finite|positive)"):
+            function(**{**given, name: three})
+
+
+@pytest.mark.parametrize("kind", [InertiaLaw.of, MassPropertiesLaw.of, gyradius.Region])
+@pytest.mark.parametrize("wrong", [None, np.nan, 1, True, "law", [], [np.nan], b"x", np.zeros(3), BODY, object()])
+def test_what_is_no_form_is_named(kind: Callable[[Any], Any], wrong: Any) -> None:
+    with pytest.raises(ValueError, match="^(said|form) = .*: it must be a dict, as it stands in files"):
+        kind(wrong)
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_a_rotation_of_scipy_turns_regions(seed: int) -> None:
+    rotation = pytest.importorskip("scipy.spatial.transform").Rotation.from_quat(np.random.default_rng(seed).normal(size=4))
+    for make in (lambda attitude: gyradius.box(sides=THREE, attitude=attitude), lambda q: gyradius.ellipsoid(semi_axes=THREE, attitude=q)):
+        assert make(rotation) == make(rotation.as_quat()) != make(None)
+    with pytest.raises(ValueError, match=r"^attitude: its shape is \(2, 4\), and it must be \(4,\)"):
+        gyradius.box(sides=1.0, attitude=[Q, Q])
+
+
 class Table:
     """An array with names, as pandas has them: of a table, or of the numbers of one row."""
 

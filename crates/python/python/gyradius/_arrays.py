@@ -205,7 +205,7 @@ def floating(dtype: DTypeLike) -> np.dtype[Any]:
     """The type of results, which must be one of floats."""
     try:
         found = np.dtype(dtype)
-    except TypeError as error:
+    except (TypeError, ValueError) as error:
         raise ValueError(f"dtype = {dtype!r}: {error}") from None
     if not np.issubdtype(found, np.floating):
         raise ValueError(f"dtype = {found}: it must be one of floats")
@@ -275,11 +275,16 @@ def folder_or_file(name: str, value: Any) -> Path:
 
 def listed(name: str, value: Any, what: str) -> list[Any]:
     """What stands in a list, or in anything that can be gone through once, as an iterator can."""
-    # A text has letters, a dictionary keys, and an array without a dimension nothing.
-    is_alone = isinstance(value, (str, bytes, Mapping)) or isinstance(value, np.ndarray) and value.ndim == 0
-    if isinstance(value, Iterable) and not is_alone:
-        return list(value)
-    raise ValueError(f"{name} = {value!r}: it must be a list of {what}")
+    wrong = f"{name} = {value!r}: it must be a list of {what}"
+    # A text has letters, and a dictionary keys.
+    if isinstance(value, (str, bytes, Mapping)):
+        raise ValueError(wrong)
+    try:
+        things = iter(value)
+    except TypeError:
+        # As of an array without a dimension, or of one body.
+        raise ValueError(wrong) from None
+    return list(things)
 
 
 def three(name: str, value: Any) -> list[Any]:
@@ -290,6 +295,13 @@ def three(name: str, value: Any) -> list[Any]:
     if found is None or len(found) != 3:
         raise ValueError(f"{name} = {value!r}: there must be 3 laws or numbers")
     return found
+
+
+def mapping(name: str, value: Any) -> Mapping[str, Any]:
+    """What stands in files by names, such as a law."""
+    if not isinstance(value, Mapping):
+        raise ValueError(f"{name} = {value!r}: it must be a dict, as it stands in files")
+    return value
 
 
 def form(name: str, value: Any) -> str:

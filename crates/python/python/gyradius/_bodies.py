@@ -23,6 +23,7 @@ from gyradius._arrays import (
     folder_or_file,
     frozen,
     is_single,
+    mapping,
     numbers,
     ordered,
     out,
@@ -33,6 +34,7 @@ from gyradius._arrays import (
 )
 from gyradius._arrays import form as _form
 from gyradius._inertia import is_realizable, of_rounded, rounding
+from gyradius._law import one_attitude
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -110,8 +112,12 @@ class MassProperties:
     @classmethod
     def of(cls, array: MassProperties | ArrayLike) -> MassProperties:
         """The bodies of an array of shape (..., 10), in the order of `gyradius.COLUMNS`."""
-        bodies, lead = body_rows("array", array)
-        return cls._of(bodies.copy().reshape(*lead, 10))
+        return cls._named("array", array)
+
+    @classmethod
+    def _named(cls, name: str, bodies: MassProperties | ArrayLike) -> MassProperties:
+        flat, lead = body_rows(name, bodies)
+        return cls._of(flat.copy().reshape(*lead, 10))
 
     @classmethod
     def _of(cls, array: NDArray[np.float64]) -> MassProperties:
@@ -358,7 +364,7 @@ class Region:
     _form: str
 
     def __init__(self, form: dict[str, Any]) -> None:
-        object.__setattr__(self, "_form", _core.checked_region(_form("", form)))
+        object.__setattr__(self, "_form", _core.checked_region(_form("", mapping("form", form))))
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"{name}: a region does not change")
@@ -399,9 +405,9 @@ def box(middle: ArrayLike = (0.0, 0.0, 0.0), *, sides: ArrayLike, attitude: Arra
     sides : array_like, shape (3,)
         Whole lengths in m.
     attitude : array_like, shape (4,), optional
-        The quaternion, scalar last, that turns the box from the axes of the body.
+        The quaternion, scalar last, or the `scipy.spatial.transform.Rotation`, that turns the box from the axes of the body.
     """
-    half = (0.5 * _three("sides", sides)).tolist()
+    half = (0.5 * _lengths("sides", sides)).tolist()
     return Region({"box": {"middle_m": _three("middle", middle).tolist(), "half_sides_m": half, **_turn(attitude)}})
 
 
@@ -409,7 +415,7 @@ def ellipsoid(
     middle: ArrayLike = (0.0, 0.0, 0.0), *, semi_axes: ArrayLike, attitude: ArrayLike | None = None
 ) -> Region:
     """An ellipsoid that holds all the matter of a body, from its middle and semi-axes in m: see `box`."""
-    form = {"middle_m": _three("middle", middle).tolist(), "semi_axes_m": _three("semi_axes", semi_axes).tolist()}
+    form = {"middle_m": _three("middle", middle).tolist(), "semi_axes_m": _lengths("semi_axes", semi_axes).tolist()}
     return Region({"ellipsoid": {**form, **_turn(attitude)}})
 
 
@@ -431,13 +437,15 @@ def _three(name: str, value: ArrayLike) -> NDArray[np.float64]:
     return array
 
 
+def _lengths(name: str, value: ArrayLike) -> NDArray[np.float64]:
+    array = _three(name, value)
+    if not np.all(array > 0):
+        raise ValueError(f"{name} = {array.tolist()}: each must be positive")
+    return array
+
+
 def _turn(attitude: ArrayLike | None) -> dict[str, Any]:
-    if attitude is None:
-        return {}
-    turn = numbers("attitude", attitude)
-    if turn.shape != (4,):
-        raise ValueError(f"attitude: its shape is {turn.shape}, and it must be (4,)")
-    return {"attitude": attitudes("attitude", turn, "xyzw")[0][0].tolist()}
+    return {} if attitude is None else {"attitude": one_attitude("attitude", attitude, "xyzw")}
 
 
 def load(path: str | os.PathLike[str], *, strict: bool = False) -> dict[str, MassProperties]:
@@ -483,12 +491,12 @@ def load(path: str | os.PathLike[str], *, strict: bool = False) -> dict[str, Mas
 
 def pseudo_inertia(bodies: MassProperties | ArrayLike) -> NDArray[np.float64]:
     """The pseudo-inertias ∫ (x, 1)(x, 1)ᵀ dm of bodies, or of an array (..., 10): shape (..., 4, 4)."""
-    return _bodies(bodies).pseudo_inertia
+    return MassProperties._named("bodies", bodies).pseudo_inertia
 
 
 def log_cholesky(bodies: MassProperties | ArrayLike) -> NDArray[np.float64]:
     """The log-Cholesky coordinates of bodies, or of an array (..., 10): shape (..., 10). See `MassProperties.log_cholesky`."""
-    return _bodies(bodies).log_cholesky
+    return MassProperties._named("bodies", bodies).log_cholesky
 
 
 def body_rows(name: str, bodies: MassProperties | ArrayLike) -> tuple[NDArray[np.float64], tuple[int, ...]]:
@@ -529,10 +537,6 @@ def _of_rounded_pseudo_inertia(matrices: NDArray[np.float64]) -> NDArray[np.floa
         mean[:, :3, :3] += _exchanged(body - own, 0.5)
         found[fine] = mean
     return found
-
-
-def _bodies(bodies: MassProperties | ArrayLike) -> MassProperties:
-    return bodies if isinstance(bodies, MassProperties) else MassProperties.of(bodies)
 
 
 __all__ = [

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import LOG_CHOLESKY, form, listed, numbers, out, real, rows, same_names, text, three
+from gyradius._arrays import LOG_CHOLESKY, form, listed, mapping, numbers, out, real, rows, same_names, text, three
 from gyradius._attitude_laws import AttitudeLaw
 from gyradius._bodies import MassProperties, Region, body_rows
 from gyradius._inertia_laws import InertiaLaw
@@ -129,7 +129,7 @@ class MassPropertiesLaw(LawOfBodies):
     @staticmethod
     def of(said: Mapping[str, Any]) -> MassPropertiesLaw:
         """A joint law as it stands in files."""
-        return make(MassPropertiesLaw, "joint", form("", said))
+        return make(MassPropertiesLaw, "joint", form("", mapping("said", said)))
 
     @staticmethod
     def log_cholesky(mean: MassProperties | ArrayLike, cov: ArrayLike) -> MassPropertiesLaw:

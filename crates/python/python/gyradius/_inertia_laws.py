@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import form, is_single, out, own_numbers, rows, same_names, text, three
+from gyradius._arrays import form, is_single, mapping, out, own_numbers, rows, same_names, text, three
 from gyradius._attitude_laws import AttitudeLaw
 from gyradius._inertia import of_rounded
 from gyradius._law import Fit, LawOfBodies, Matrix, known, make, of_kind, picture, short, vector
@@ -56,7 +56,7 @@ class InertiaLaw(LawOfBodies):
     @staticmethod
     def of(said: Mapping[str, Any]) -> InertiaLaw:
         """A law as it stands in files."""
-        return make(InertiaLaw, "of_form", form("", said))
+        return make(InertiaLaw, "of_form", form("", mapping("said", said)))
 
     @staticmethod
     def about(kind: str, inertia: ArrayLike, **parameters: Any) -> InertiaLaw:

@@ -148,7 +148,7 @@ def one_attitude(name: str, value: ArrayLike, order: str) -> tuple[float, ...]:
     """One quaternion of norm one, scalar last."""
     flat, lead = attitudes(name, value, order)
     if lead != ():
-        raise ValueError(f"{name}: it must be one quaternion, of shape (4,)")
+        raise ValueError(f"{name}: its shape is {(*lead, 4)}, and it must be (4,)")
     return tuple(flat[0].tolist())
 
 

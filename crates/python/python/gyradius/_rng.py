@@ -86,7 +86,10 @@ RNG: TypeAlias = Union[None, Whole, np.random.SeedSequence, np.random.Generator,
 
 def _places(index: ArrayLike) -> NDArray[np.uint64]:
     unmasked("index", index)
-    array = np.asarray(index)
+    try:
+        array = np.asarray(index)
+    except ValueError as error:
+        raise ValueError(f"index: it must be whole numbers: {error}") from None
     # NumPy makes floats of whole numbers, some of which are above 2**63, and objects of those above 2**64.
     if array.dtype in (np.float64, np.object_) and not isinstance(index, np.ndarray):
         exact = np.asarray(index, dtype=object)
