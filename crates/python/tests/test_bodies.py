@@ -170,6 +170,46 @@ def test_arrays_of_32_bits_are_fitted_and_held_as_the_bodies_of_them(seed: int, 
     assert (region.holds(wide) == np.where(gyradius.is_realizable(MassProperties.of(wide).inertia), region.holds(made), 0.0)).all()
 
 
+@given(st.integers(0, 2**32), st.floats(-3.0, 6.0), st.floats(-3.0, 3.0))
+def test_plates_and_rods_about_a_point_far_away_stay_bodies(seed: int, far: float, off: float) -> None:
+    rng = np.random.default_rng(seed)
+    flat = inertias(rng, 100)
+    trace = np.trace(flat, axis1=1, axis2=2)
+    mass = trace / 10.0 ** rng.uniform(-2, 2, 100)
+    size = np.sqrt(trace / mass)[:, None]
+    centre, point = (10.0**one * rng.normal(size=(100, 3)) * size for one in (far, off))
+    about = MassProperties(mass, centre, flat).inertia_about(point)
+    rounded = np.trace(about, axis1=1, axis2=2)
+    found = MassProperties.about_point(mass, centre, about, point)
+    assert found.is_realizable.all()
+    assert (found.mass == mass).all() and (found.centre == centre).all()
+    # Moved by no more than the rounding of what was given, and of the mass and the distance that are subtracted.
+    assert (np.abs(found.inertia - flat).max(axis=(1, 2)) <= 4e-14 * rounded).all()
+    # What lies outside by more than this rounding stays there.
+    axes = np.linalg.eigh(flat)[1]
+    outside = flat + (1e-12 * rounded + trace)[:, None, None] * axes[:, :, 2:] * axes[:, None, :, 2].reshape(100, 1, 3)
+    moved = MassProperties.about_point(mass, centre, about + outside - flat, point)
+    assert not moved.is_realizable.any()
+
+
+@pytest.mark.parametrize("wrong", [np.nan, np.inf, -np.inf, 1e308])
+@pytest.mark.parametrize("dtype", ["f4", "f8"])
+@pytest.mark.parametrize("which", range(4))
+def test_what_is_not_finite_about_a_point_is_no_body(wrong: float, dtype: str, which: int) -> None:
+    known = [np.array(1.0), np.ones(3), np.eye(3), np.zeros(3)]
+    for place in np.ndindex(known[which].shape):
+        given = [one.copy() for one in known]
+        given[which][place] = wrong
+        with np.errstate(over="ignore"):
+            given[2] = given[2].astype(dtype)
+        # One product that is large and finite is an asymmetry.
+        if which == 2 and dtype == "f8" and place[0] != place[1] and np.isfinite(wrong):
+            with pytest.raises(ValueError, match="^inertia: it must be symmetric"):
+                MassProperties.about_point(*given)
+        else:
+            assert not MassProperties.about_point(*given).is_realizable
+
+
 def test_what_is_no_body_for_more_than_rounding_stays_none_in_32_bits() -> None:
     outside = np.diag([1.0, 1.0, 2.001])
     second = 0.5 * np.trace(outside) * np.eye(3) - outside

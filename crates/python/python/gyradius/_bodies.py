@@ -71,7 +71,7 @@ class MassProperties:
     entries 11, 22, 33, 12, 13, 23 of the inertia about the mass centre in kg·m², products as tensor entries. They need not be
     those of a body: `is_realizable` says which are, and what computes with bodies refuses the others. Of inertias and pseudo-inertias
     in 32 bits, whose rounding takes about half of all plates out of what bodies have, those that lie outside by no more than this
-    rounding, 7.6e-6 of the trace that was given, are replaced by the nearest that some body has.
+    rounding, 7.6e-6 of the trace that was given, are replaced by the nearest that some body has. Of inertias about another point, see `about_point`.
 
     Parameters
     ----------
@@ -129,16 +129,20 @@ class MassProperties:
     def about_point(
         cls, mass: ArrayLike, centre: ArrayLike, inertia: ArrayLike, point: ArrayLike = (0.0, 0.0, 0.0)
     ) -> MassProperties:
-        """The bodies of which the inertia is known about another point than the mass centre, such as the origin."""
+        """The bodies of which the inertia is known about another point than the mass centre, such as the origin.
+
+        Far from the point the rounding of what is given, 1.4e-14 of its trace in 64 bits, is much of the inertia about the mass centre: what
+        lies outside of what bodies have by no more than this is replaced by the nearest that some body has.
+        """
         given = own_numbers("inertia", inertia)
         known = ("mass", mass, ()), ("centre", centre, (3,)), ("inertia", given, (3, 3)), ("point", point, (3,))
         (m, c, i, p), lead = together(*known)
-        at = c - p
-        square = (at * at).sum(axis=-1)[:, None, None] * np.eye(3)
-        moved = m[:, :, None] * (square - at[:, :, None] * at[:, None, :])
-        own = i.reshape(-1, 3, 3) - moved
-        if is_single(given):
-            own = of_rounded(own, i[:, ::4].sum(axis=1))
+        # What is not finite, or becomes so, is no body, of which `is_realizable` tells.
+        with np.errstate(invalid="ignore", over="ignore"):
+            at = c - p
+            square = (at * at).sum(axis=-1)[:, None, None] * np.eye(3)
+            moved = m[:, :, None] * (square - at[:, :, None] * at[:, None, :])
+            own = of_rounded(i.reshape(-1, 3, 3) - moved, i[:, ::4].sum(axis=1), SINGLE if is_single(given) else i.dtype)
         return cls(m.reshape(lead), c.reshape(*lead, 3), own.reshape(*lead, 3, 3))
 
     @classmethod

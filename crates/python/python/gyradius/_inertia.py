@@ -188,11 +188,13 @@ def nearest(
     return out(_core.inertia_nearest(flat, text("method", method)), (*lead, 3, 3), dtype)
 
 
-def of_rounded(inertia: NDArray[np.float64], beside: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
-    """Inertias (n, 3, 3) of numbers that were rounded to 32 bits: the nearest of some body in the place of those that only this rounding
+def of_rounded(
+    inertia: NDArray[np.float64], beside: NDArray[np.float64] | None = None, dtype: np.dtype[Any] = SINGLE
+) -> NDArray[np.float64]:
+    """Inertias (n, 3, 3) of numbers that were rounded to this type: the nearest of some body in the place of those that only this rounding
     took from all bodies. `beside` has the traces of the inertias that were rounded, if these follow from others."""
     sizes = np.trace(inertia, axis1=1, axis2=2) if beside is None else beside
-    allowed = rounding(SINGLE) * sizes[:, None, None]
+    allowed = rounding(dtype) * sizes[:, None, None]
     turned = inertia.transpose(0, 2, 1)
     mean = 0.5 * (inertia + turned)
     is_near = (np.abs(inertia - turned) <= allowed).all(axis=(1, 2))
