@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextvars
 import decimal
+import functools
 import os
 import subprocess
 import sys
@@ -171,3 +172,35 @@ def test_another_function_is_told_by_what_was_kept(rows: str, columns: list[str]
         said = str(study.replay(3))
         assert ("the same, bit for bit, as in" in said) == (columns is None or columns == ["x", "y"])
         assert ("bit for bit, in the columns that were kept, as in" in said) == (columns not in (None, ["x", "y"]))
+
+
+def told(inputs: dict[str, float], run: float = -1.0, *, model: Any = -1.0, seed: float = -1.0) -> dict[str, float]:
+    """What a function is told by name."""
+    return {"told_run": float(run), "told_model": -2.0 if isinstance(model, str) else float(model), "told_seed": float(seed % 2**20)}
+
+
+def told_all(inputs: dict[str, float], **about: Any) -> dict[str, float]:
+    """The same, of a function that takes whatever it is given."""
+    assert set(about) <= {"run", "model", "seed"}
+    return told(inputs, **about)
+
+
+class Part(functools.partial):  # type: ignore[type-arg]
+    """A partial that another one does not take apart."""
+
+
+@pytest.mark.parametrize("function", [told, told_all])
+@pytest.mark.parametrize("made", [functools.partial, Part])
+@pytest.mark.parametrize("inner", [set(), {"run"}, {"seed"}, {"model", "seed"}, {"run", "model", "seed"}])
+@pytest.mark.parametrize("outer", [set(), {"run"}, {"model"}, {"run", "seed"}])
+def test_what_is_bound_by_keyword_stays(function: Any, made: Any, inner: set[str], outer: set[str]) -> None:
+    bound = {name: 5.0 + place for place, name in enumerate(sorted(inner))}
+    last = {name: 55.0 + place for place, name in enumerate(sorted(outer))}
+    simulation = made(made(function, **bound), **last) if outer else made(function, **bound)
+    outputs = {f"told_{name}": "1" for name in ("run", "model", "seed")}
+    tables = [gyradius.study(scenario(runs=5), one, outputs=outputs) for one in (simulation, function)]
+    found, free = ([study.replay(run).row for run in range(5)] for study in tables)
+    for name in outputs:
+        kept = {**bound, **last}.get(name.removeprefix("told_"))
+        assert [row[name] for row in found] == ([row[name] for row in free] if kept is None else [kept] * 5), name
+    assert [row["told_run"] for row in free] == list(range(5)) and free[0]["told_model"] == -2.0

@@ -54,18 +54,19 @@ def called_with(simulation: Simulation) -> tuple[Called, set[str]]:
     first, *others = parameters
     if first.kind is inspect.Parameter.VAR_POSITIONAL:
         others = parameters
+    bound = _bound(simulation)
+    others = [other for other in others if other.name not in bound]
     by_name = (inspect.Parameter.KEYWORD_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
     everything = any(other.kind is inspect.Parameter.VAR_KEYWORD for other in others)
-    wanted = (
-        ABOUT if everything else tuple(other.name for other in others if other.kind in by_name and other.name in ABOUT)
-    )
+    named = {other.name for other in others if other.kind in by_name}
+    wanted = tuple(name for name in ABOUT if name not in bound and (everything or name in named))
     needed = set()
     for other in others:
-        named = other.kind in by_name and other.name in ABOUT
-        if named and other.default is inspect.Parameter.empty:
+        is_known = other.kind in by_name and other.name in ABOUT
+        if is_known and other.default is inspect.Parameter.empty:
             needed.add(other.name)
         various = other.kind in (inspect.Parameter.VAR_KEYWORD, inspect.Parameter.VAR_POSITIONAL)
-        if not (named or various) and other.default is inspect.Parameter.empty:
+        if not (is_known or various) and other.default is inspect.Parameter.empty:
             if other.name in ABOUT:
                 raise ValueError(f"simulation: its parameter {other.name!r} is given by its name, and stands before a `/`")
             known = ", ".join(ABOUT)
@@ -73,6 +74,16 @@ def called_with(simulation: Simulation) -> tuple[Called, set[str]]:
     if not wanted:
         return lambda inputs, about: simulation(inputs), needed
     return lambda inputs, about: simulation(inputs, **{name: about[name] for name in wanted if name in about}), needed
+
+
+def _bound(simulation: Simulation) -> set[str]:
+    """The parameters that have got a value by keyword, in `functools.partial`, and keep it."""
+    function: Any = simulation
+    bound: set[str] = set()
+    while isinstance(function, functools.partial):
+        bound |= function.keywords.keys()
+        function = function.func
+    return bound
 
 
 def in_context(called: Called) -> Called:

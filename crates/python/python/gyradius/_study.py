@@ -297,7 +297,7 @@ def study(
     simulation : callable, optional
         Does a run: ``simulation(inputs)`` is called with a dictionary of what was drawn, by name, and returns a dictionary
         of the outputs, which must be finite numbers. If it has parameters called ``run``, ``model``, ``seed``, ``vehicle`` or ``flight``,
-        it is given these by keyword; its own random numbers should come from ``numpy.random.default_rng(seed)``. An exception is a
+        it is given these by keyword, but for those that a `functools.partial` has bound by keyword; its own random numbers should come from ``numpy.random.default_rng(seed)``. An exception is a
         failed run: a row with the exception's type and text. Without it, gyradius simulates separations, and a file names a command.
     outputs : dict, optional
         Names and units of the outputs. If neither this nor the scenario declares any, the first of ten runs that does not fail does,
