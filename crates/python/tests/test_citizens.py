@@ -10,6 +10,7 @@ import multiprocessing
 import os
 import pickle
 import pkgutil
+import re
 import signal
 import subprocess
 import sys
@@ -22,6 +23,8 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import URDF, bodies
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from test_laws import laws_of_bodies
 
 import gyradius
@@ -360,3 +363,35 @@ def test_pictures_in_notebooks(name: str) -> None:
     some = bodies(np.random.default_rng(1), 20)
     assert tree.fromstring(some._repr_html_()).tag.endswith("svg")
     assert some[0]._repr_html_().startswith("<pre>")
+
+
+IMPOSSIBLE = [
+    [-1.0, 0, 0, 0, 1, 1, 1, 0, 0, 0],
+    [0.0, 0, 0, 0, 1, 1, 1, 0, 0, 0],
+    [1.0, 0, 0, 0, 1, 1, 3, 0, 0, 0],
+    [1.0, 0, 0, 0, 1, 1, 1, 5, 0, 0],
+    [1.0, 0, 0, 0, 1, 1, np.nan, 0, 0, 0],
+    [1.0, 0, np.inf, 0, 1, 1, 1, 0, 0, 0],
+    [np.nan, 0, 0, 0, 1, 1, 1, 0, 0, 0],
+]
+
+
+@settings(max_examples=60)
+@given(st.integers(1, 700), st.sampled_from([0, 1, 2, 3, None]), st.booleans(), st.integers(0, 2**32))
+def test_pictures_say_how_many_draws_belong_to_no_body(count: int, few: int | None, others: bool, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    number = int(rng.integers(0, count + 1)) if few is None else min(few, count)
+    number = count - number if others else number
+    table = bodies(rng, count).array.copy()
+    for place in rng.permutation(count)[:number]:
+        table[place] = IMPOSSIBLE[rng.integers(len(IMPOSSIBLE))]
+    page = gyradius.MassProperties.of(table)._repr_html_()
+    (share, percent, total) = re.findall(r">([0-9]+)( %)? of ([0-9]+) draws belongs? to no body<", page)[0]
+    assert int(total) == count
+    if percent:
+        assert abs(int(share) - 100 * number / count) <= 0.5
+        assert (int(share) == 0) == (number == 0) and (int(share) == 100) == (number == count)
+    else:
+        assert int(share) == number
+    # Red where there is one, and green where there is none.
+    assert ('fill="#d1242f"' in page) == (number > 0)

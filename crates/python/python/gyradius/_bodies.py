@@ -349,9 +349,7 @@ class MassProperties:
 
         if self.shape == ():
             return f"<pre>{html.escape(repr(self))}</pre>"
-        # What has no moments has no place in the picture.
-        finite = np.isfinite(self._flat()).all(axis=1)
-        return triangle([(repr(self).strip("<>"), self.inertia.reshape(-1, 3, 3)[finite])], "Mass properties")
+        return triangle([(repr(self).strip("<>"), self)], "Mass properties")
 
     def __repr__(self) -> str:
         if self.shape != ():

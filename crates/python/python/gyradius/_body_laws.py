@@ -218,7 +218,7 @@ class MassPropertiesLaw(LawOfBodies):
         return MassPropertiesLaw._fit("joint", _core.fit_bodies(body_rows("bodies", bodies)[0]))
 
     def _repr_html_(self) -> str:
-        return picture(self, self.rvs(500, rng=0).inertia)
+        return picture(self, self.rvs(500, rng=0))
 
     def __repr__(self) -> str:
         return short(self)

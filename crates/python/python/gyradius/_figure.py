@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import html
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from gyradius._bodies import MassProperties
 
 SIDE = 330.0
 HEAD = 52.0
@@ -31,13 +33,14 @@ def second_moments(inertia: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.divide(k, total, out=np.full_like(k, 1 / 3), where=total > 0)
 
 
-def triangle(panels: Sequence[tuple[str, NDArray[np.float64]]], title: str) -> str:
-    """Draws of inertias (n, 3, 3) as points in the triangle of bodies, red outside of it; a panel for each of them, side by side."""
-    shares = [second_moments(np.asarray(inertia, dtype=float)) for _, inertia in panels]
-    low, size = _window(np.concatenate(shares) @ CORNERS)
+def triangle(panels: Sequence[tuple[str, NDArray[np.float64] | MassProperties]], title: str) -> str:
+    """Draws of inertias (n, 3, 3), or of bodies, as points in the triangle of bodies, red what no body has; a panel for each of them, side
+    by side. What is not finite has no place there, and counts."""
+    drawn = [_shares(some) for _, some in panels]
+    low, size = _window(np.concatenate([shares for shares, _ in drawn]) @ CORNERS)
     width = len(panels) * (SIDE + 24) + 16
     height = HEAD + SIDE + 40
-    said = "; ".join(f"{name}: {_impossible(one)}" for (name, _), one in zip(panels, shares))
+    said = "; ".join(f"{name}: {_impossible(bad)}" for (name, _), (_, bad) in zip(panels, drawn))
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0f} {height:.0f}" width="{width:.0f}" role="img" '
         'style="max-width:100%;height:auto" font-family="\'Helvetica Neue\',Helvetica,Arial,sans-serif">',
@@ -45,8 +48,8 @@ def triangle(panels: Sequence[tuple[str, NDArray[np.float64]]], title: str) -> s
         f"<desc>{html.escape(said)}</desc>",
         f'<rect width="{width:.0f}" height="{height:.0f}" fill="#ffffff"/>',
     ]
-    for place, ((name, _), one) in enumerate(zip(panels, shares)):
-        parts.append(_panel(16 + place * (SIDE + 24), name, one, low, size))
+    for place, ((name, _), (shares, bad)) in enumerate(zip(panels, drawn)):
+        parts.append(_panel(16 + place * (SIDE + 24), name, shares, bad, low, size))
     foot = "Each point is a draw: the shares of its second moments. Flat bodies are on the sides, rods in the corners, a ball in the middle."
     words = foot if len(panels) > 1 else "Flat bodies are on the sides, rods in the corners."
     parts.append(_text(16, height - 12, words, 11, FAINT))
@@ -65,15 +68,27 @@ def _window(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
     return 0.5 * (low + high) - 0.5 * size, size
 
 
-def _panel(left: float, name: str, shares: NDArray[np.float64], low: NDArray[np.float64], size: float) -> str:
+def _shares(drawn: Any) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """The shares (n, 3) of the second moments in their sum, NaN of what is not finite, and which of the draws no body has."""
+    inertia = np.asarray(getattr(drawn, "inertia", drawn), dtype=float).reshape(-1, 3, 3)
+    # Bodies have a mass and a place, too.
+    ten = np.asarray(getattr(drawn, "array", np.ones(10))).reshape(-1, 10)
+    shares = np.full((len(inertia), 3), np.nan)
+    finite = np.isfinite(inertia).all(axis=(1, 2))
+    shares[finite] = second_moments(inertia[finite])
+    return shares, ~((shares.min(axis=1) >= -1e-9) & (ten[:, 0] > 0) & np.isfinite(ten).all(axis=1))
+
+
+def _panel(
+    left: float, name: str, shares: NDArray[np.float64], bad: NDArray[np.bool_], low: NDArray[np.float64], size: float
+) -> str:
     scale = SIDE / size
 
     def at(points: NDArray[np.float64]) -> NDArray[np.float64]:
         return (points - low) * scale
 
     corners = " ".join(f"{x:.1f},{y:.1f}" for x, y in at(CORNERS))
-    bad = shares.min(axis=1) < -1e-9
-    share = _impossible(shares)
+    share = _impossible(bad)
     parts = [
         _text(left, 20, name, 14, INK, bold=True),
         _text(left, 40, share, 13, BAD if bad.any() else GOOD),
@@ -107,9 +122,12 @@ def _key(low: NDArray[np.float64], size: float) -> str:
     )
 
 
-def _impossible(shares: NDArray[np.float64]) -> str:
-    bad = int((shares.min(axis=1) < -1e-9).sum())
-    return f"{100 * bad / max(len(shares), 1):.0f} % of {len(shares)} draws belong to no body"
+def _impossible(bad: NDArray[np.bool_]) -> str:
+    draws, few = len(bad), int(bad.sum())
+    percent = round(100 * few / max(draws, 1))
+    # None and all are said of none and of all alone.
+    is_rounded_away = (percent == 0 and few > 0) or (percent == 100 and few < draws)
+    return f"{few if is_rounded_away else f'{percent} %'} of {draws} draws {'belongs' if is_rounded_away and few == 1 else 'belong'} to no body"
 
 
 def _text(x: float, y: float, words: str, size: float, colour: str, *, bold: bool = False) -> str:

@@ -192,11 +192,11 @@ def known(law: Law, what: str, value: Any) -> Any:
     return value
 
 
-def picture(law: Law, inertia: NDArray[Any]) -> str:
+def picture(law: Law, drawn: Any) -> str:
     """Draws of a law in the triangle of bodies."""
     from gyradius._figure import triangle
 
-    return triangle([(f"{type(law).__name__} {law._core.name()}", inertia)], repr(law))
+    return triangle([(f"{type(law).__name__} {law._core.name()}", drawn)], repr(law))
 
 
 def short(law: Law) -> str:
