@@ -47,6 +47,15 @@ def test_columns_that_are_no_names_are_refused(wrong: Any) -> None:
         study(columns=wrong)
 
 
+@pytest.mark.parametrize("kept", [[], ["y"], ["x", "z"], ["z", "y", "x"]])
+@pytest.mark.parametrize("rows", ["all", "failed", "none"])
+def test_columns_tell_what_a_run_fills_whatever_is_kept(kept: list[str], rows: str) -> None:
+    whole, part = study(), study(columns=kept, rows=rows)
+    assert part.columns == whole.columns and part.units == whole.units
+    assert list(whole.columns) == list(whole.to_numpy()["all"])
+    assert set(part.to_numpy()["all"]) <= set(part.columns)
+
+
 SCALARS = ("mass", "centre1", "centre2", "centre3", "shape1", "shape2", "shape3")
 
 

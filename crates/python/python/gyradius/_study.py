@@ -139,12 +139,12 @@ class Study:
 
     @property
     def columns(self) -> dict[str, str]:
-        """The columns of the run tables, each with its meaning."""
+        """What a run fills, each column with its meaning, as `summary` has numbers of it; `to_numpy` has those of them that were kept."""
         return {column["column"]: column["meaning"] for column in self.summary["columns"]}
 
     @property
     def units(self) -> dict[str, str]:
-        """The units of the columns that have one, ``"1"`` of numbers without."""
+        """The units of the `columns` that have one, ``"1"`` of numbers without."""
         return {column["column"]: column["unit"] for column in self.summary["columns"] if "unit" in column}
 
     def to_numpy(self) -> dict[str, dict[str, NDArray[Any]]]:
