@@ -6,6 +6,7 @@ spatial inertias and momenta that the library computes, beside the same from the
 
 from __future__ import annotations
 
+import importlib
 import sys
 import types
 from pathlib import Path
@@ -411,6 +412,30 @@ class Tensor(np.ndarray):
         """A tensor of the same type."""
         return np.asarray(value, dtype=self.dtype).view(Tensor)
 
+    def cpu(self) -> Tensor:
+        """The same on the CPU, where all others are."""
+        return self
+
+
+class Elsewhere:
+    """Indices on a GPU, by which no tensor on the CPU can be indexed."""
+
+    def __init__(self, indices: np.ndarray):
+        self.indices = indices
+
+    def cpu(self) -> Tensor:
+        """The same on the CPU."""
+        return self.indices.view(Tensor)
+
+
+@pytest.fixture
+def with_isaac_lab(monkeypatch: pytest.MonkeyPatch) -> types.ModuleType:
+    """The adapter, with as much of PyTorch as it uses."""
+    torch = types.SimpleNamespace(arange=lambda count, device: np.arange(count).view(Tensor), Tensor=Tensor)
+    monkeypatch.setitem(sys.modules, "torch", torch)
+    monkeypatch.delitem(sys.modules, "with_isaac_lab", raising=False)
+    return importlib.import_module("with_isaac_lab")
+
 
 class View:
     """As much of PhysX's view of articulations as the adapter uses: getters give copies, setters take the rows of
@@ -439,21 +464,22 @@ def asset(view: View) -> types.SimpleNamespace:
     return types.SimpleNamespace(root_physx_view=view, body_names=["base", "arm", "other", "plate"])
 
 
-def test_isaac_lab_is_given_the_drawn_bodies_in_its_tensors():
+@pytest.mark.parametrize("given", [lambda indices: indices.view(Tensor), Elsewhere, lambda indices: None])
+@pytest.mark.parametrize("environments", [[6, 1, 3], [0], [4, 3, 2, 1, 0], [0, 1, 2, 3, 4]])
+def test_isaac_lab_is_given_the_drawn_bodies_in_its_tensors(with_isaac_lab, given, environments: list[int]):
     # No simulator is here: a small stand-in has the shapes, types and frames that its documentation states.
-    import with_isaac_lab
-
-    view = View(8, 4)
+    env_ids = given(np.array(environments))
+    environments = [0, 1, 2, 3, 4] if env_ids is None else environments
+    view = View(5 if env_ids is None else 8, 4)
     drawn = draws({"plate": PLATE, "arm": ARM})
-    env_ids = np.array([6, 1, 3]).view(Tensor)
     with_isaac_lab.apply(asset(view), env_ids, drawn)
-    for row, env in enumerate((6, 1, 3)):
+    for row, env in enumerate(environments):
         for body, name in ((1, "arm"), (3, "plate")):
             close(view.held["masses"][env, body], drawn[name].mass[row], 1e-6)
             close(view.held["coms"][env, body], np.append(drawn[name].centre[row], [0, 0, 0, 1]), 1e-6)
             close(view.held["inertias"][env, body].reshape(3, 3), drawn[name].inertia[row], 1e-6)
-    untouched = np.ones((8, 4), bool)
-    untouched[np.ix_([6, 1, 3], [1, 3])] = False
+    untouched = np.ones(view.held["masses"].shape, bool)
+    untouched[np.ix_(environments, [1, 3])] = False
     for values in view.held.values():
         assert np.all(values[untouched] == 0.125)
 
@@ -463,9 +489,9 @@ def test_isaac_lab_is_given_the_drawn_bodies_in_its_tensors():
     "name, entries, what",
     [("masses", (), "masses"), ("coms", ([0, 1, 2],), "mass centres"), ("inertias", ([1, 2, 3, 5, 6, 7],), "inertias")],
 )
-def test_isaac_lab_that_drops_anything_of_a_body_of_any_size_is_found_out(body: int, name: str, entries: tuple, what: str):
-    import with_isaac_lab
-
+def test_isaac_lab_that_drops_anything_of_a_body_of_any_size_is_found_out(
+    with_isaac_lab, body: int, name: str, entries: tuple, what: str
+):
     for size in 10.0 ** np.arange(-4, 4):
         # The same bodies in another length and another mass, beside one that stays as it is.
         small = ["arm", "plate"][[1, 3].index(body)]

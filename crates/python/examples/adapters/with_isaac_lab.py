@@ -8,12 +8,13 @@ the link.
 from __future__ import annotations
 
 import gyradius
+import torch
 
 
-def apply(asset, env_ids, draws: dict[str, gyradius.MassProperties]) -> None:
+def apply(asset, env_ids: torch.Tensor | None, draws: dict[str, gyradius.MassProperties]) -> None:
     """Write a draw of the bodies, by their names, into each of some environments: row i of the draws into `env_ids[i]`.
 
-    `asset` is an articulation and `env_ids` a tensor of indices on the CPU, as an event gets them.
+    `asset` is an articulation, and `env_ids` is what an event gets: a tensor of indices on any device, or None for all environments.
 
     Raises
     ------
@@ -23,6 +24,7 @@ def apply(asset, env_ids, draws: dict[str, gyradius.MassProperties]) -> None:
     """
     view = asset.root_physx_view
     masses, poses, inertias = view.get_masses(), view.get_coms(), view.get_inertias()
+    env_ids = torch.arange(len(masses), device="cpu") if env_ids is None else env_ids.cpu()
     for name, bodies in draws.items():
         body = asset.body_names.index(name)
         rows = slice(0, len(env_ids))
