@@ -11,8 +11,6 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from gyradius._bodies import MassProperties
-
 SIDE = 330.0
 HEAD = 52.0
 """Height above each panel, in which its title and the number of impossible draws stand."""
@@ -33,7 +31,7 @@ def second_moments(inertia: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.divide(k, total, out=np.full_like(k, 1 / 3), where=total > 0)
 
 
-def triangle(panels: Sequence[tuple[str, NDArray[np.float64] | MassProperties]], title: str) -> str:
+def triangle(panels: Sequence[tuple[str, Any]], title: str) -> str:
     """Draws of inertias (n, 3, 3), or of bodies, as points in the triangle of bodies, red what no body has; a panel for each of them, side
     by side. What is not finite has no place there, and counts."""
     drawn = [_shares(some) for _, some in panels]
