@@ -279,6 +279,8 @@ pub(crate) fn near_boundary(table: &Table, entries: &[impl AsRef<str>; 6]) -> [u
 mod together;
 
 #[cfg(test)]
+mod root_tests;
+#[cfg(test)]
 mod some_runs_tests;
 #[cfg(test)]
 mod tests;

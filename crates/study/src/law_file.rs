@@ -2,7 +2,6 @@
 
 use gyradius_dispersion::{MassPropertiesLaw, ScalarLaw};
 use gyradius_inertia::MassProperties;
-use nalgebra::Matrix3;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::Distribution;
 use serde::Deserialize;
@@ -42,7 +41,7 @@ struct LawBody {
 const OF_A_BODY: [&str; 3] = ["inertia_kg_m2", "dispersion", "law"];
 /// The table that only statements have.
 const NOMINAL: &str = "nominal";
-/// Draws of a whole law whose mean inertia stands for the nominal one. Nothing that is drawn depends on it.
+/// Draws of a whole law whose mean principal moments stand for the nominal ones. Nothing that is drawn depends on it.
 const DRAWS_OF_MEAN: usize = 256;
 
 impl LawFile {
@@ -192,15 +191,18 @@ impl LawBody {
     }
 }
 
-/// About the mass centre, by rows, of draws with a fixed seed.
+/// About the mass centre, by rows, of draws with a fixed seed: the means of their principal moments from the least to the largest, since in
+/// the means of entries axes that scatter mix the moments.
 fn mean_inertia(law: &MassPropertiesLaw) -> [[f64; 3]; 3] {
     let mut rng = ChaCha8Rng::seed_from_u64(0);
-    let mut sum = Matrix3::zeros();
+    let mut mean = [0.0; 3];
     for _ in 0..DRAWS_OF_MEAN {
         let body: MassProperties = law.sample(&mut rng);
-        sum += body.inertia().matrix() / DRAWS_OF_MEAN as f64;
+        let mut moments = body.inertia().principal_axes().moments();
+        moments.sort_by(f64::total_cmp);
+        mean = std::array::from_fn(|i| mean[i] + moments[i] / DRAWS_OF_MEAN as f64);
     }
-    std::array::from_fn(|i| std::array::from_fn(|j| sum[(i, j)]))
+    std::array::from_fn(|i| std::array::from_fn(|j| if i == j { mean[i] } else { 0.0 }))
 }
 
 /// The text of a file with a table for each body, of JSON.

@@ -47,6 +47,7 @@ mod law_file;
 mod loads;
 mod model;
 mod off_nominal;
+mod off_roots;
 mod options;
 mod quantity;
 mod rare;

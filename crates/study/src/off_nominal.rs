@@ -4,7 +4,10 @@ use gyradius_report::significant;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-use crate::scenario::{Axes, Dispersed, Joint, Scenario, Target, UncertainBody};
+use crate::{
+    off_roots::off_nominal_roots,
+    scenario::{Axes, Dispersed, Joint, Scenario, Target, UncertainBody},
+};
 
 /// A factor between the mean of a law and the nominal value beside it that nobody means: a decimal point that slipped makes ten, but for
 /// the rounding and the spread of the law.
@@ -56,8 +59,8 @@ pub enum OffNominal {
 }
 
 impl OffNominal {
-    /// Those of numbers that are drawn, of the inertias that bodies have by their own laws with axes that are read so, and of mass centres;
-    /// the bodies are those of the joint law, in its order.
+    /// Those of numbers that are drawn, of the roots and the inertias that bodies have by their own laws with axes that are read so, and of
+    /// mass centres; the bodies are those of the joint law, in its order.
     pub(crate) fn all<'a, T: 'a>(
         numbers: impl Iterator<Item = &'a Dispersed<T>>,
         joint: &Joint<T>,
@@ -70,7 +73,16 @@ impl OffNominal {
             let mean = || Some(trace(body.expected_moments(axes?)?.mean()));
             let nominal = trace(body.nominal().as_inertia_matrix().entries());
             let quantity = format!("trace of the inertia of the {name}");
-            all.extend(mean().and_then(|mean| Self::of_value(quantity, nominal, mean)));
+            let of_trace = mean().and_then(|mean| Self::of_value(quantity, nominal, mean));
+            let of_axes = off_nominal_roots(name, body).into_iter();
+            let of_roots: Vec<Self> = of_axes
+                .filter_map(|(root, nominal, mean)| Self::of_value(root, nominal, mean))
+                .collect();
+            match (of_roots.len(), of_trace) {
+                // The whole inertia is, and no axis more than others.
+                (0 | 3, Some(of_trace)) => all.push(of_trace),
+                (_, Some(_) | None) => all.extend(of_roots),
+            }
         }
         for (place, (name, body)) in bodies.iter().enumerate() {
             all.extend(of_centre(joint, place, name, body));

@@ -161,15 +161,20 @@ impl UncertainBody {
         self.law.as_ref()
     }
 
-    /// What the roots can be called as numbers of their own, in which unit, and their laws, if each has its own.
-    pub(crate) fn root_numbers(&self) -> Option<([&'static str; 2], &[ScalarLaw; 3])> {
+    /// The law of the roots at the nominal mass, and what they are called and in which unit; nothing of models without such.
+    pub(crate) fn roots(&self) -> Option<(&RootLaw, [&'static str; 2])> {
         match &self.inertia {
             BodyInertia::Principal { roots, lengths, .. } => {
-                let name = if *lengths { [LENGTH, "m"] } else { [ROOT, "sqrt_kg_m"] };
-                Some((name, independent(roots)?))
+                Some((roots, if *lengths { [LENGTH, "m"] } else { [ROOT, "sqrt_kg_m"] }))
             }
             BodyInertia::Model(_) => None,
         }
+    }
+
+    /// What the roots can be called as numbers of their own, in which unit, and their laws, if each has its own.
+    pub(crate) fn root_numbers(&self) -> Option<([&'static str; 2], &[ScalarLaw; 3])> {
+        let (roots, name) = self.roots()?;
+        Some((name, independent(roots)?))
     }
 
     /// What the gyration lengths are called, and the laws of the roots that they make at the nominal mass, if changes of lengths are given.
@@ -184,12 +189,9 @@ impl UncertainBody {
 
     /// Roots of the body, which has this name, whose laws lie below zero; nothing of models without such.
     pub(crate) fn folded(&self, body: &str) -> Vec<FoldedRoot> {
-        match &self.inertia {
-            BodyInertia::Principal { roots, lengths, .. } => {
-                FoldedRoot::of(body, if *lengths { LENGTH } else { ROOT }, roots.folded_shares())
-            }
-            BodyInertia::Model(_) => Vec::new(),
-        }
+        self.roots().map_or_else(Vec::new, |(roots, [called, _])| {
+            FoldedRoot::of(body, called, roots.folded_shares())
+        })
     }
 
     /// With roots that are correlated so; coefficients of other scalars are passed over.
