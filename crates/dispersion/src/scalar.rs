@@ -6,7 +6,7 @@ use rand_distr::{Distribution, StandardNormal};
 use crate::truncated_normal::MAX_DISTANCE;
 use form::Declaration;
 use laws::DECLARATIONS;
-pub(crate) use laws::SAFE_DEVIATION;
+pub(crate) use laws::NEVER;
 
 /// The enumeration of the laws, and what every one is asked. `laws.rs` calls it with their names.
 macro_rules! laws {

@@ -315,6 +315,39 @@ fn masses_are_positive() {
     assert!(law(ScalarLaw::uniform(0.0, 3.0).unwrap()).is_ok());
 }
 
+proptest! {
+    /// Whatever the law of a mass: it is taken as it is if it is next to never negative, if it is normal and scatters by no more than its
+    /// mean as what is above zero of it, and not at all otherwise; and no draw is negative.
+    #[test]
+    fn one_bound_is_for_all_masses(
+        kind in 0..8_usize, deviations in prop_oneof![-1.0..12.0_f64, 7.5..8.5_f64, Just(8.0)], sigma in 1e-3..1e3_f64, cut in 0.1..4.0_f64,
+    ) {
+        let mean = deviations * sigma;
+        let (high, far) = (mean + cut * sigma, f64::INFINITY);
+        let mass = match kind {
+            0..5 => scalar(if kind == 2 { 0 } else { kind }, mean, sigma),
+            5 => ScalarLaw::truncated_normal(mean, sigma, -far, high).unwrap(),
+            6 => ScalarLaw::truncated_normal(mean, sigma, mean - cut * sigma, far).unwrap(),
+            _ => ScalarLaw::samples(&[mean, high]).unwrap(),
+        };
+        let below_zero = mass.cdf(0.0);
+        let still = || ScalarLaw::normal(0.1, 0.0).unwrap();
+        let lengths = TensorLaw::gyration_lengths([still(), still(), still()], UniformAttitude);
+        let law = MassPropertiesLaw::new(mass.clone(), [still(), still(), still()], lengths);
+        // What eight deviations below the mean of a normal law is.
+        let never = below_zero <= 6.2210e-16;
+        let is_cut = !never && mass.as_normal().is_some() && deviations >= 1.0;
+        prop_assert_eq!(law.is_ok(), never || is_cut, "{:?} {}", mass, below_zero);
+        let Ok(law) = law else { return Ok(()) };
+        prop_assert_eq!(law.mass() == &mass, never);
+        prop_assert!(kind != 0 || deviations < 8.0 || never);
+        let mut rng = ChaCha8Rng::seed_from_u64(sigma.to_bits());
+        let mut rows = vec![[0.0; 10]; 64];
+        law.sample_into(&mut rng, &mut rows);
+        prop_assert!(rows.iter().all(|row| row[0] > 0.0));
+    }
+}
+
 #[test]
 fn what_is_no_law_is_refused_by_name() {
     let still = || ScalarLaw::normal(1.0, 0.0).unwrap();

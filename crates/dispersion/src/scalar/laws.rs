@@ -14,8 +14,10 @@ use crate::scaled::root_of_squares;
 use crate::truncated_draw::Truncated;
 use crate::truncated_normal::WindowError;
 
-/// Up to this share of the mean, the deviation of a normal law makes a negative value less likely than 1e-15.
-pub(crate) const SAFE_DEVIATION: f64 = 0.125;
+/// Up to this share of the mean, the deviation of a normal law makes a negative value as unlikely as [`NEVER`].
+const SAFE_DEVIATION: f64 = 0.125;
+/// What is not more likely than this is taken for impossible: Φ(−8), of a normal law what is eight deviations below its mean.
+pub(crate) const NEVER: f64 = 6.221e-16;
 
 laws!(Normal, Uniform, TruncatedNormal, Lognormal, Triangular, Beta, Weibull, Samples, Bernoulli);
 
