@@ -273,9 +273,10 @@ impl ScalarLaw {
         self.0.reach(far)
     }
 
-    /// All values in rising order with their probabilities, of a law of single values.
+    /// All values in rising order with their probabilities, of a law of single values, or of one that does not vary.
     pub(crate) fn atoms(&self) -> Option<Vec<(f64, f64)>> {
-        self.0.atoms()
+        let still = || (self.deviation() == 0.0).then(|| vec![(self.at_score(0.0), 1.0)]);
+        self.0.atoms().or_else(still)
     }
 }
 

@@ -316,6 +316,32 @@ fn masses_are_positive() {
 }
 
 proptest! {
+    /// What does not vary has its own value as the mean and a deviation of zero, to the bit, whatever varies beside it.
+    #[test]
+    fn what_is_known_has_no_deviation(
+        kind in 0..16_usize, kinds in prop::array::uniform3(0..5_usize), still in 0..16_u8, values in prop::array::uniform4(-4.0..4.0_f64), law in 0..4_usize,
+    ) {
+        let values = values.map(|x| 10_f64.powf(x));
+        let scalars = [0, 1, 2, 3].map(|i| {
+            let (value, same) = (values[i], [values[i]; 2]);
+            match law {
+                _ if still >> i & 1 == 0 => scalar(kinds[i % 3], value, 0.1 * value),
+                0 => ScalarLaw::normal(value, 0.0).unwrap(),
+                1 => ScalarLaw::uniform(value, value).unwrap(),
+                2 => ScalarLaw::triangular(value, value, value).unwrap(),
+                _ => ScalarLaw::samples(&same).unwrap(),
+            }
+        });
+        let [mass, x, y, z] = scalars;
+        let law = MassPropertiesLaw::new(mass, [x, y, z], tensor(kind, [0.3, 0.1, 0.2], kinds)).unwrap();
+        let moments = law.moments().unwrap();
+        for i in (0..4).filter(|i| still >> i & 1 == 1) {
+            prop_assert_eq!(moments.deviations()[i], 0.0);
+            prop_assert_eq!(moments.mean()[i], values[i]);
+            prop_assert!((0..10).all(|j| moments.covariance()[(i, j)] == 0.0));
+        }
+    }
+
     /// Whatever the law of a mass: it is taken as it is if it is next to never negative, if it is normal and scatters by no more than its
     /// mean as what is above zero of it, and not at all otherwise; and no draw is negative.
     #[test]
