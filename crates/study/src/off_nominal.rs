@@ -229,7 +229,7 @@ impl fmt::Display for OffNominal {
             }
             Self::Value { quantity, nominal, mean } => write!(
                 f,
-                "{quantity} is {} in the scenario, and the mean of its law is {}. Whatever is nominal, and models about the nominal \
+                "the nominal value of {quantity} is {}, and the mean of its law is {}. Whatever is nominal, and models about the nominal \
                  bodies, go by the former. Is there a digit or a unit too much in one of them?",
                 short(*nominal),
                 short(*mean)

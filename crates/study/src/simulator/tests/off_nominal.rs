@@ -33,7 +33,7 @@ const MASSES: [(&str, &[&str]); 6] = [
     ),
     (
         "mass_kg = { law = \"uniform\", low = 4750, high = 5250 }",
-        &["NAME_mass_kg is 500 in the scenario, and the mean of its law is 5500."],
+        &["the nominal value of NAME_mass_kg is 500, and the mean of its law is 5500."],
     ),
     ("mass_kg = { mean = 300.0, sigma = 1.0 }", &[]),
 ];
@@ -86,14 +86,14 @@ fn campaigns_tell_laws_that_are_far_from_nominal_values() {
     bodies.push((whole(510.0, [3.1, 0.01, 1.4]), vec![]));
     bodies.push((
         whole(5100.0, [3.1, 0.01, 1.4]),
-        vec!["NAME_mass_kg is 500 in the scenario, and the mean of its law is 5100."],
+        vec!["the nominal value of NAME_mass_kg is 500, and the mean of its law is 5100."],
     ));
     // The value itself, which is twice the nominal one on purpose.
     bodies.push((whole(1000.0, [3.1, 0.01, 1.4]), vec![]));
     bodies.push((
         whole(510.0, [0.1, 0.0, 1.4]),
         vec![
-            "NAME_mass_centre_1_m",
+            "the nominal value of NAME_mass_centre_1_m",
             "the mean of the law of the mass centre of the NAME is (-3, 0, 0) m away from the nominal one, along body axes. Both are told",
         ],
     ));
