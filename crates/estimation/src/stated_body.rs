@@ -49,6 +49,9 @@ pub struct StatedBody {
     /// Nothing where the inertia does no more than follow the mass.
     #[getset(skip)]
     model: Option<StatedModel>,
+    /// Of what is stated of the inertia of a point, which no model is made of.
+    #[getset(skip)]
+    of_point: Option<StatementWarning>,
 }
 
 impl StatedBody {
@@ -80,7 +83,8 @@ impl StatedBody {
         let centre = statements.centre.map_or([0.0; 3], |centre| centre.deviations());
         let law = Self::law_of(nominal, relative.unwrap_or(0.0), centre, model.as_ref())
             .map_err(|error| StatementError::Law { problem: error.to_string() })?;
-        Ok(Self { nominal: *nominal, law, model })
+        let of_point = (spoken && is_point).then_some(StatementWarning::Point);
+        Ok(Self { nominal: *nominal, law, model, of_point })
     }
 
     /// The law of a model that statements have made, with the mass and the mass centre that were stated with it, about a
@@ -94,7 +98,7 @@ impl StatedBody {
         let centre = model.centre_deviations().unwrap_or_default();
         let law = Self::law_of(nominal, relative, centre, Some(&model))
             .map_err(|error| StatementError::Law { problem: error.to_string() })?;
-        Ok(Self { nominal: *nominal, law, model: Some(model) })
+        Ok(Self { nominal: *nominal, law, model: Some(model), of_point: None })
     }
 
     fn law_of(
@@ -157,7 +161,7 @@ impl StatedBody {
     /// Contradictions, and what has been left open.
     #[must_use]
     pub fn warnings(&self) -> &[StatementWarning] {
-        self.model.as_ref().map_or(&[], StatedModel::warnings)
+        self.model.as_ref().map_or(self.of_point.as_slice(), StatedModel::warnings)
     }
 }
 
@@ -173,8 +177,10 @@ gyradius_dispersion::written!(
         nominal: MassProperties = body.nominal,
         law: MassPropertiesLaw = body.law.clone(),
         model: Option<StatedModel> = body.model.clone(),
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        of_point: Option<StatementWarning> = body.of_point,
     },
-    StatedBody { nominal, law, model }
+    StatedBody { nominal, law, model, of_point }
 );
 
 #[cfg(test)]
@@ -218,7 +224,10 @@ mod tests {
     }
 
     fn body() -> impl Strategy<Value = MassProperties> {
-        let second = prop::array::uniform3(select(vec![0.0, 0.2, 1.0, 1.0, 1.3, 3.0]));
+        let second = prop_oneof![
+            4 => prop::array::uniform3(select(vec![0.0, 0.2, 1.0, 1.0, 1.3, 3.0])),
+            1 => select(vec![[0.0; 3], [1.0; 3]]),
+        ];
         let axes = select(vec![[1.0, 0.0, 0.0, 0.0], [0.9, 0.1, -0.3, 0.2], [0.5, 0.5, 0.5, 0.5]]);
         (1e-4..1e3_f64, second, -9.0..4.0_f64, axes).prop_map(
             |(mass, second, size, [w, x, y, z])| {
@@ -267,6 +276,15 @@ mod tests {
                 let text = warning.to_string();
                 prop_assert!(!text.contains("inf") && !text.contains("NaN"), "{text}");
             }
+            // What has no effect is told, and nothing else is said to have none.
+            let trace = nominal.inertia().matrix().trace();
+            let says = |told| law.warnings().contains(&told);
+            let of_inertia = said.moments.is_some() || said.axes.is_some();
+            prop_assert_eq!(says(StatementWarning::Point), of_inertia && trace == 0.0);
+            let [a, b, c] = nominal.inertia().principal_axes().moments();
+            let is_ball = trace > 0.0 && a.max(b).max(c) - a.min(b).min(c) < 1e-9 * trace;
+            let unturned = said.axes.is_some() && said.moments.is_none() && is_ball;
+            prop_assert_eq!(says(StatementWarning::Ball), unturned);
             let ([mass, centre @ ..], moments) = deviations(&law);
             let [percent, of_moments, _, metres] = sizes;
             let near = |x: f64, y: f64| (x - y).abs() <= 0.08 * y + 1e-12;
@@ -274,6 +292,9 @@ mod tests {
             prop_assert!(near(mass / nominal.mass_kg(), stated), "{mass} {stated}");
             let stated = if said.centre.is_some() { metres } else { 0.0 };
             prop_assert!(centre.iter().all(|c| near(*c, stated)), "{centre:?} {stated}");
+            if of_inertia && trace == 0.0 || unturned && said.mass.is_none() {
+                prop_assert!(moments.iter().all(|moment| *moment <= 1e-12 * trace), "{moments:?}");
+            }
             if said.moments.is_some() && law.warnings().is_empty() {
                 for (i, moment) in moments.iter().enumerate() {
                     let entry = nominal.inertia().entries()[i];

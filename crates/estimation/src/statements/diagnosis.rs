@@ -60,6 +60,7 @@ impl Context {
     pub(super) fn warnings(&self, model: &StatedModel) -> Vec<StatementWarning> {
         let stated = &self.stated;
         let mut warnings = said_nothing_of(model, stated);
+        warnings.extend(axes_without_effect(model, stated));
         warnings.extend(follows_in_part(model, stated));
         if matches!(model.law_at_nominal_mass().roots(), RootLaw::CorrelatedGaussian(_)) {
             warnings.push(StatementWarning::Correlated);
@@ -195,6 +196,17 @@ fn said_nothing_of(model: &StatedModel, stated: &Stated) -> Vec<StatementWarning
         warnings.push(StatementWarning::FixedAxes);
     }
     warnings
+}
+
+/// Turns change nothing where all moments are equal, and stay so.
+fn axes_without_effect(model: &StatedModel, stated: &Stated) -> Option<StatementWarning> {
+    let turns = stated.axes?.iter().any(|turn| *turn > 0.0);
+    let [a, b, c] = model.nominal().second_moments().values();
+    let most = STILL * model.nominal().matrix().trace();
+    let equal = a.max(b).max(c) - a.min(b).min(c) <= most;
+    let scatter = model.law_at_nominal_mass().roots().second_moment_statistics().variances();
+    let still = scatter.iter().all(|variance| variance.sqrt() <= most);
+    (turns && equal && still).then_some(StatementWarning::Ball)
 }
 
 /// Where the inertia cannot wholly follow the mass, the moment that would be moved most beyond what is

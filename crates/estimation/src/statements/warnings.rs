@@ -113,6 +113,10 @@ pub enum StatementWarning {
         /// The two axes, from 1.
         axes: [usize; 2],
     },
+    /// Moments, products or axes are stated of a point, which has none.
+    Point,
+    /// Axes are stated of a body whose moments are equal and do not scatter, so that no turn changes it.
+    Ball,
     /// Nothing is said of the moments.
     FixedMoments,
     /// Nothing is said of the axes.
@@ -181,6 +185,8 @@ impl StatementWarning {
             Self::Free { axis } => Some(format!("axis {axis}")),
             Self::Correlated
             | Self::AxesAndProducts { .. }
+            | Self::Point
+            | Self::Ball
             | Self::FixedMoments
             | Self::FixedAxes => None,
         }
@@ -293,6 +299,12 @@ impl fmt::Display for StatementWarning {
                 f,
                 "principal moments {a} and {b} differ by less than they scatter: which way the nominal \
                  body has these two axes means little, and the model keeps them there"
+            ),
+            Self::Point => f.write_str(
+                "the inertia is zero, as that of a point: what is stated of moments, products and axes has no effect",
+            ),
+            Self::Ball => f.write_str(
+                "the three principal moments are equal and do not scatter: what is stated of the axes has no effect",
             ),
             Self::FixedMoments => {
                 f.write_str("nothing is said of the moments: the second moments do not scatter")
