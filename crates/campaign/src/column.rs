@@ -49,6 +49,9 @@ impl Column {
         (number.fract() == 0.0 && (0.0..MOST_EXACT).contains(&number)).then_some(number as u64)
     }
 
+    /// The column of the name of the model, in every table.
+    pub const MODEL: &str = "model";
+
     /// The column of the number of the run, in every table.
     pub const RUN: &str = "run";
 
@@ -159,7 +162,7 @@ impl Column {
     /// The columns that every table begins with.
     pub(crate) fn first() -> [Self; 3] {
         [
-            Self::new("model", Kind::Text, "Name of the model.").required(),
+            Self::new(Self::MODEL, Kind::Text, "Name of the model.").required(),
             Self::new(Self::RUN, Kind::Integer, "Number of the run, from 0.").required(),
             Self::new("status", Kind::Text, "`ok`, or the reason why the run failed.").required(),
         ]

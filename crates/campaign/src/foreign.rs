@@ -6,6 +6,7 @@ mod of_csv;
 mod of_folder;
 mod of_parquet;
 mod reason;
+mod row_at;
 mod twice;
 mod written;
 

@@ -12,6 +12,7 @@ mod judged_tables;
 mod kept;
 mod no_runs;
 mod requirement;
+mod row_at;
 mod row_order;
 mod scratch;
 mod several_models;

@@ -17,9 +17,9 @@ use std::{
 use crate::scratch::scratch;
 
 /// A row: its model, its run and its number.
-type Row = (&'static str, u64, i32);
+pub(crate) type Row = (&'static str, u64, i32);
 
-fn write_parquet(path: &Path, [model, run]: [&str; 2], rows: &[Row]) {
+pub(crate) fn write_parquet(path: &Path, [model, run]: [&str; 2], rows: &[Row]) {
     let schema = format!(
         "message it {{ required binary {model} (UTF8); required double x; required int64 {run}; }}"
     );

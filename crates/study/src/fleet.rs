@@ -2,11 +2,7 @@
 
 use gyradius_campaign::{Column, Counting, ForeignError, ForeignTable, Kind, Spans};
 use serde::{Deserialize, Serialize};
-use std::{
-    borrow::Cow,
-    collections::{BTreeMap, BTreeSet},
-    fmt,
-};
+use std::{borrow::Cow, collections::BTreeMap, fmt, iter};
 
 /// Vehicles, each of which flies so many times.
 ///
@@ -70,17 +66,18 @@ impl Fleet {
     /// or how many vehicles are left out, for their first flight is not in it.
     ///
     /// # Errors
-    /// The table cannot be read, or its columns `run`, `vehicle` and `flight` are not those of a study.
+    /// The table cannot be read, its columns `run`, `vehicle` and `flight` are not those of a study, or a run that no column `model` names has two
+    /// rows.
     pub fn first_flights(
         table: ForeignTable,
     ) -> Result<(ForeignTable, Option<Cow<'static, str>>), ForeignError> {
         const OTHER: &str = "the columns run, vehicle and flight do not belong together as in the run table of a study, where the run is \
                              the vehicle times the flights of each plus the flight, all from 0: all rows are judged as runs that are \
                              independent of each other, which flights of one vehicle need not be";
-        again(&table)?;
         if table.campaign().is_some() {
             return Ok((table, None));
         }
+        again(&table)?;
         let [vehicle, flight] = Self::columns();
         let alike = |own: &Column| table.alike(own.name()).next();
         // A column of flights alone may be any program's.
@@ -145,50 +142,65 @@ impl Fleet {
     }
 }
 
-/// That no flight stands twice among the rows that no column `model` says the model of, which their run, vehicle and flight name. Of those with a model,
-/// judging tells.
+/// That no run stands twice among the rows that no column `model` says the model of: their run tells them apart, with the vehicle and the flight where
+/// there are such columns. Of those with a model, judging tells.
 fn again(table: &ForeignTable) -> Result<(), ForeignError> {
-    let [vehicle, flight] = Fleet::columns().map(|column| table.spelled(column.name()).cloned());
-    let (Some(run), Some(vehicle), Some(flight)) =
-        (table.spelled(Column::RUN).cloned(), vehicle, flight)
-    else {
+    // Of several columns of models nobody knows which says it.
+    let (Some(run), None) = (table.spelled(Column::RUN), table.alike(Column::MODEL).nth(1)) else {
         return Ok(());
     };
-    let names = [run, vehicle, flight];
-    // Flights that are no numbers are those of another program.
-    let each = |look: &mut dyn FnMut([u64; 3])| {
+    let of_fleet = Fleet::columns();
+    let apart = of_fleet.iter().flat_map(|column| table.alike(column.name()));
+    let names: Vec<String> = iter::once(run).chain(apart).cloned().collect();
+    // False if the column names no runs, as judging sees it, or vehicles and flights are no numbers: those are of another program.
+    let each = |look: &mut dyn FnMut(u64, &[u64])| {
+        let (mut first, mut all_whole) = (0, true);
         let read = table.scan_of_models(&[], &names, |columns, models| {
-            let [runs, vehicles, flights] = columns else { return };
-            let rows = runs.iter().zip(vehicles).zip(flights).zip(models);
-            for (((run, vehicle), flight), _) in rows.filter(|(_, model)| model.is_none()) {
-                let whole = |x: &Option<f64>| x.and_then(Column::run_named);
-                if let (Some(run), Some(vehicle), Some(flight)) =
-                    (whole(run), whole(vehicle), whole(flight))
-                {
-                    look([run, vehicle, flight]);
+            for (row, model) in (0..).zip(models) {
+                let mut whole = columns.iter().map(|cells| cells[row].and_then(Column::run_named));
+                let run = whole.next().flatten();
+                all_whole &= run.is_some();
+                let numbers: Option<Vec<u64>> = iter::once(run).chain(whole).collect();
+                if let (None, Some(numbers)) = (model, numbers) {
+                    look(first + row as u64, &numbers);
                 }
             }
+            first += models.len() as u64;
         });
-        read.is_ok()
+        read.is_ok() && all_whole
     };
-    let (mut seen, mut repeated) = (Spans::default(), false);
-    if !each(&mut |[run, ..]| repeated |= seen.add(run, 0).is_err()) || !repeated {
-        return Ok(());
-    }
-    // A run may stand for another vehicle again: that takes memory, and is rare.
-    let (mut flights, mut twice) = (BTreeSet::new(), None);
-    each(&mut |flight| {
-        if !flights.insert(flight) && twice.is_none() {
-            twice = Some(flight);
+    let twice = |is_apart: bool| {
+        let (mut seen, mut twice) = (BTreeMap::<Vec<u64>, Spans>::new(), None);
+        let is_known = each(&mut |_, numbers| {
+            if let ([run, apart @ ..], None) = (numbers, &twice) {
+                let apart = if is_apart { apart.to_vec() } else { Vec::new() };
+                let added = seen.entry(apart).or_default().add(*run, 0);
+                twice = added.is_err().then(|| numbers.to_vec());
+            }
+        });
+        twice.filter(|_| is_known)
+    };
+    // A run may stand for each of many vehicles: to tell these apart takes memory, and few tables need it.
+    let Some(twice) = twice(false).and_then(|_| twice(true)) else { return Ok(()) };
+    let mut rows = Vec::new();
+    each(&mut |row, numbers| {
+        if rows.len() < 2 && *numbers == *twice {
+            rows.push(row);
         }
     });
-    match twice {
-        None => Ok(()),
-        Some([run, vehicle, flight]) => Err(table.refused(&format!(
-            "two rows are of the run {run}, vehicle {vehicle}, flight {flight}: a run counts once. Take away the copy, or, if these are runs of \
-             different models, judge each model in a file of its own"
-        ))),
-    }
+    let at: Vec<String> = rows.into_iter().map(|row| table.row_at(row)).collect();
+    let named: Vec<String> = names
+        .iter()
+        .zip(&twice)
+        .map(|(name, number)| format!("{} {number}", name.trim()))
+        .collect();
+    Err(table.refused(&format!(
+        "{} are both of {}: a run counts once. If a run has many rows, as in a time history, leave it one, such as that of its worst value; if \
+         one row is a copy, take it away; if each row is a run of its own, give it a number of its own in the column {run:?}, or give that \
+         column another name; and judge different models each in a file of its own",
+        at.join(" and "),
+        named.join(", ")
+    )))
 }
 
 /// Vehicles of each model, each counted once, in flat memory where they are in order.
@@ -274,6 +286,7 @@ impl fmt::Display for Fleet {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use std::collections::BTreeSet;
 
     proptest! {
         /// Any rows of any fleet, in any order, say how many flights each vehicle makes, those of the first vehicle alone at most as many;
@@ -314,32 +327,49 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(128))]
 
-        /// Rows without a model, of a fleet or of anything else: the table is refused if one flight stands twice, and only then for that.
+        /// Rows without a model, of a fleet or of anything else: the table is refused if one run stands twice, by all columns that tell runs
+        /// apart, and only then for that, with both of its rows. A column `run` names no runs if a cell of it is no whole number.
         #[test]
-        fn no_flight_counts_twice(
+        fn no_run_counts_twice(
             rows in prop::collection::vec((0..4_u8, 0..3_u8, 0..2_u8), 1..6),
             is_fleet in any::<bool>(),
             names in prop::sample::select(vec![["run", "vehicle", "flight"], ["Run", "VEHICLE", " flight"]]),
+            apart in prop::sample::subsequence(vec![1_usize, 2], 0..=2),
+            odd in prop::option::weighted(0.2, prop::sample::select(vec!["0.5", "-1", "", "a"])),
             (head, cell, has_model) in prop::sample::select(vec![
                 ("", "", false),
                 (",model", ",a", true),
                 (",Model", ",a", true),
-                // A cell that names no model.
+                // A cell that names no model, and columns of which nobody knows which names it.
                 (",model", ",", false),
+                (",model,model", ",a,a", true),
             ]),
         ) {
-            let rows: Vec<(u8, u8, u8)> = rows
+            let rows: Vec<[u8; 3]> = rows
                 .into_iter()
-                .map(|(run, vehicle, flight)| (if is_fleet { 2 * vehicle + flight } else { run }, vehicle, flight))
+                .map(|(run, vehicle, flight)| [if is_fleet { 2 * vehicle + flight } else { run }, vehicle, flight])
                 .collect();
-            let [run, vehicle, flight] = names;
-            let mut csv = format!("x,{run},{vehicle},{flight}{head}\n");
-            rows.iter().for_each(|(run, vehicle, flight)| csv += &format!("1,{run},{vehicle},{flight}{cell}\n"));
+            let kept = |row: [String; 3]| -> String {
+                apart.iter().fold(row[0].clone(), |line, place| format!("{line},{}", row[*place]))
+            };
+            let mut csv = format!("# a comment\nx,{}{head}\n", kept(names.map(str::to_owned)));
+            rows.iter().for_each(|row| csv += &format!("1,{}{cell}\n", kept(row.map(|number| number.to_string()))));
+            if let Some(odd) = odd {
+                csv += &format!("1,{}{cell}\n", kept([odd, "0", "0"].map(str::to_owned)));
+            }
             let table = ForeignTable::read_csv("it.csv".as_ref(), csv.as_bytes()).unwrap();
-            let distinct: BTreeSet<_> = rows.iter().collect();
-            let is_refused = Fleet::first_flights(table).is_err_and(|error| error.to_string().contains("a run counts once"));
+            let key = |row: &[u8; 3]| (row[0], apart.iter().map(|place| row[*place]).collect::<Vec<_>>());
+            let before = |at: usize| rows[..at].iter().position(|row| key(row) == key(&rows[at]));
+            let twice = (0..rows.len()).find_map(|at| Some([before(at)? + 3, at + 3]));
+            let twice = twice.filter(|_| !has_model && odd.is_none());
+            let refused = Fleet::first_flights(table).err().map(|error| error.to_string());
+            let refused = refused.filter(|error| error.contains("a run counts once"));
             // Of a model and a run, judging tells.
-            prop_assert_eq!(is_refused, distinct.len() < rows.len() && !has_model, "{}", csv);
+            prop_assert_eq!(refused.is_some(), twice.is_some(), "{}", csv);
+            if let (Some(refused), Some([one, other])) = (refused, twice) {
+                let said = format!("it.csv: line {one} and line {other} are both of {} {}", names[0], rows[other - 3][0]);
+                prop_assert!(refused.starts_with(&said), "{}{}", csv, refused);
+            }
         }
 
         /// Vehicles are those of a model: of each model it is known which have no first flight, in any order of the rows.
