@@ -277,7 +277,7 @@ impl AnyScenario {
     ///
     /// # Errors
     /// There is no such model or column, or the numbers of runs are out of range; a simulator cannot be started; it was stopped. For importance
-    /// sampling: nothing is drawn by a normal score.
+    /// sampling: nothing that is drawn can be steered by a normal score.
     pub fn rare(
         &self,
         event: &Event,

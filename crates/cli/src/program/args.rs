@@ -143,7 +143,8 @@ pub(crate) enum Command {
     ///
     /// Importance sampling: masses, mass centres, springs and quantities are drawn from laws under which the event is less rare, and each
     /// run counts with the ratio of the densities, which is exact. Searches find these laws level by level, and a sample
-    /// gives the probability. Inertias keep their own laws. The answer says what was drawn from which law.
+    /// gives the probability. Lengths and roots of the inertia of a body are drawn so, too, if one of them is correlated. Other inertias,
+    /// axes, and all of a body with `inside` keep their own laws. The answer says what was drawn from which law.
     #[command(after_help = RARE_EXAMPLES)]
     Rare(RareArgs),
     /// Print a script that lets a shell complete verbs, flags and values
@@ -356,7 +357,7 @@ pub(crate) struct RareArgs {
 pub(crate) enum RareMethodArg {
     /// Subset simulation, which serves any law
     Subset,
-    /// Importance sampling, for masses, mass centres, springs and quantities
+    /// Importance sampling, for masses, mass centres, springs, quantities, and lengths and roots of inertias that are correlated
     Importance,
 }
 

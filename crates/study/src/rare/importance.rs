@@ -22,12 +22,7 @@ pub(super) fn find<C: Subject>(
     failures: &mut Failures,
 ) -> Result<(SteeredEstimate, bool), StudyError> {
     if runs.groups().scored().is_empty() {
-        let problem = format!(
-            "importance: nothing that the model {} draws is drawn by a normal score, which masses, mass centres, springs and quantities \
-             are; method \"subset\" serves any law",
-            runs.model()
-        );
-        return Err(ScenarioError::field("method", problem).into());
+        return Err(ScenarioError::field("method", nothing_to_steer(runs)).into());
     }
     if !(FEWEST..=MOST).contains(&sample) {
         let problem = format!("{sample} runs: there must be {FEWEST} to {MOST}");
@@ -70,4 +65,20 @@ pub(super) fn find<C: Subject>(
     }
     failures.weighted = Some(weighted);
     Ok((sampling.finish(Confidence::default())?, !search.law().is_own()))
+}
+
+/// Why no run can be drawn nearer to the event: what is drawn, all of which keeps its own law.
+fn nothing_to_steer<C: Subject>(runs: &EventRuns<'_, C>) -> String {
+    let [_, own] = runs.groups().by_scores();
+    let of_region = if runs.groups().kept().is_empty() {
+        ""
+    } else {
+        ". Of a body that has `inside`, all is drawn again until its matter is in the region, so that none of it can be steered"
+    };
+    format!(
+        "importance: the model {} draws nothing that can be steered by a normal score: {} keep their own laws{of_region}; method \"subset\" \
+         serves any law",
+        runs.model(),
+        own.join("; ")
+    )
 }

@@ -249,6 +249,47 @@ fn what_cannot_be_found_is_told() {
     }
 }
 
+/// Masses, and lengths of which one is correlated, are steered unless a region keeps the body; where nothing is, the refusal says what there is
+/// and whether the region is the reason.
+#[test]
+fn a_region_and_no_correlation_leave_nothing_to_steer() {
+    for case in 0..8_u8 {
+        let [has_mass, is_correlated, has_region] = [1, 2, 4].map(|bit| case & bit > 0);
+        let given = |is_given: bool, what: &'static str| if is_given { what } else { "" };
+        let text = format!(
+            "name = \"own\"\n[payload]\nmass_kg = 500.0\ninertia_kg_m2 = [[120.0, 0.0, 0.0], [0.0, 110.0, 0.0], [0.0, 0.0, 90.0]]\nposition_m = [0, 0, 1]\n\
+             [payload.dispersion]\ngyration_lengths_m = [0.01, 0.01, 0.01]\naxes = \"fixed\"\n{}{}\
+             [stage]\nmass_kg = 2000.0\ninertia_kg_m2 = [[3000.0, 0.0, 0.0], [0.0, 3000.0, 0.0], [0.0, 0.0, 900.0]]\n\
+             position_m = [0, 0, -1]\n[stage.dispersion]\nroot_second_moment_variance_kg_m2 = [0.0, 0.0, 0.0]\naxes = \"fixed\"\n\
+             [[springs]]\nstiffness_n_per_m = 20000.0\nstroke_m = 0.1\npayload_point_m = [0.0, 0.1, -0.9]\n\
+             stage_point_m = [0.0, 0.1, 0.9]\n[[models]]\nname = \"own\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n{}",
+            given(has_mass, "mass_percent = 5.0\n"),
+            given(
+                has_region,
+                "inside = { box = { middle_m = [0, 0, 0], half_sides_m = [0.6, 0.6, 0.5] } }\n"
+            ),
+            given(
+                is_correlated,
+                "[[correlations]]\nbetween = [\"payload_gyration_length_1_m\", \"payload_gyration_length_2_m\"]\ncoefficient = 0.5\n"
+            ),
+        );
+        let scenario = Scenario::from_toml(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let method = options(RareMethod::Importance { sample: 100 }, 100);
+        let event = "cone_deg >= 5".parse().unwrap();
+        let runs = EventRuns::new(&scenario, &event, &method, &|_| {}).unwrap();
+        let [steered, own] = runs.groups().by_scores();
+        let expected = [(has_mass, "payload mass"), (is_correlated, "payload gyration length")];
+        let expected = expected.into_iter().filter(|(is_there, _)| *is_there && !has_region);
+        assert_eq!(steered, expected.map(|(_, name)| name).collect::<Vec<_>>(), "{text}");
+        if steered.is_empty() {
+            let refused =
+                find(&scenario, &event, &method, &|_| {}, &|_| {}).unwrap_err().to_string();
+            assert!(refused.contains(&own.join("; ")), "{refused}");
+            assert_eq!(refused.contains("`inside`"), has_region, "{refused}");
+        }
+    }
+}
+
 /// Every probability is told from 0 and from 1, in as many digits as asked.
 #[test]
 fn probabilities_near_one_are_no_one() {
