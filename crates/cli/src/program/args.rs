@@ -224,7 +224,7 @@ pub(crate) struct StudyArgs {
     #[arg(long, value_name = "WHICH", value_parser = rows())]
     pub(crate) rows: Option<Rows>,
 
-    /// Columns of the run tables to keep once all runs are done, besides model, run and status [default: as in the scenario]
+    /// Columns of the run tables to keep once all runs are done, besides model, run and status, and of vehicles vehicle and flight [default: as in the scenario]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) columns: Option<Vec<String>>,
 

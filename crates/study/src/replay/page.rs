@@ -83,8 +83,8 @@ pub(crate) fn html(replay: &Replay) -> String {
              the previous and the next event, r to reset; arrows, + and − turn and zoom the scene once it is chosen."
         } }
         @if !replay.history.releases.is_empty() {
-            p { small { "Marks on the slider, and dashed lines in the charts, show when each spring is released, by its number. Where the springs are \
-                 released early, the time up to the last release takes the first half of the slider and of the charts." } }
+            p { small { "Marks on the slider, and dashed lines in the charts, show when each spring is released, by its number. Where the last \
+                 release is in the first quarter of the time, the first half of the slider and of the charts goes up to 1.2 times the time of that release." } }
         }
         script { (PreEscaped("const data = ")) (PreEscaped(data)) (PreEscaped(";\n")) (PreEscaped(SCRIPT)) }
     };

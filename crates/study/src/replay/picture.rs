@@ -9,7 +9,7 @@ use super::{
 use crate::loads::Short;
 use gyradius_report::{Chart, Curve, Hue, time_charts};
 
-/// How far beyond the last release the left half shows, relative.
+/// How far beyond the last release the left half and the energies show, relative.
 const BEYOND: f64 = 1.15;
 
 /// Colours of the bodies and of the springs, in every chart and in the animation.
@@ -89,6 +89,7 @@ pub(super) fn svg(replay: &Replay) -> String {
     charts.extend(both("payload rates (deg/s)", &|| rates(false)));
     charts.extend(both("stage rates (deg/s)", &|| rates(true)));
     charts.extend(both("nutation (deg)", &nutation));
+    // Of rotation, too, nothing changes after the last release.
     charts.push(chart("energy (J)", parts(&[0, 1, 3]), near));
     charts.push(chart("energy of rotation (J)", parts(&[2, 4]), near));
     let title = format!("{}: {}, run {}", replay.scenario.name(), replay.model, replay.row().run());
