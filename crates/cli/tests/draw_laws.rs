@@ -344,3 +344,42 @@ fn studies_tell_what_there_is_to_doubt() {
         }
     }
 }
+
+/// A mass that nobody said is no part of a body's size, in which distances of mass centres are told: whatever else is 1 kg, and in JSON with a byte
+/// order mark and without.
+#[test]
+fn a_mass_that_nobody_said_makes_no_size() {
+    let shell = Scratch::new();
+    for mass in ["", "mass_kg = 1.0", "mass_kg = 500.0"] {
+        for mean in [0.02, 0.3, 3.0] {
+            let body = format!(
+                "[payload]\n{mass}\ninertia_kg_m2 = [[110.0, 0.0, 0.0], [0.0, 80.0, 0.0], [0.0, 0.0, 90.0]]\n[payload.dispersion]\n\
+                 mass_centre_m = [{{ mean = {mean:?}, sigma = 0.001 }}, 0.001, 0.001]\n\
+                 root_second_moment_variance_kg_m2 = [0.01, 0.01, 0.01]\naxes = \"fixed\"\n"
+            );
+            let size_m = match mass {
+                "" => None,
+                "mass_kg = 1.0" => Some(140_f64.sqrt()),
+                _ => Some((140.0 / 500.0_f64).sqrt()),
+            };
+            let json = serde_json::json!({ "fragment": { "toml": body } }).to_string();
+            for (name, text) in [
+                ("law.toml", body.clone()),
+                ("marked.toml", format!("\u{feff}{body}")),
+                ("law.json", json.clone()),
+                ("marked.json", format!("\u{feff}{json}")),
+            ] {
+                fs::write(shell.path(name), text).unwrap();
+                let output = shell.run(&["draw", name, "-n", "2"]);
+                let message = String::from_utf8(output.stderr).unwrap();
+                assert!(output.status.success(), "{name}: {message}");
+                let is_told = message.contains("the mean of the law of the mass centre");
+                assert_eq!(
+                    is_told,
+                    size_m.is_some_and(|size| mean > 0.1 * size),
+                    "{name} {mass}: {message}"
+                );
+            }
+        }
+    }
+}

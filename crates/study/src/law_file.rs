@@ -8,7 +8,7 @@ use serde::Deserialize;
 use std::{collections::BTreeMap, path::Path};
 
 use crate::{
-    FragmentBody, ScenarioError, SimulatorScenario, parse_toml,
+    FragmentBody, OffNominal, ScenarioError, SimulatorScenario, parse_toml,
     scenario::{AsGiven, DispersionFile, scenario_text},
     simulator::SimulatorDraws,
 };
@@ -55,6 +55,8 @@ impl LawFile {
             return Ok(None);
         }
         let text = scenario_text(path)?;
+        // TOML may begin with a byte order mark, and JSON, as it is read, may not.
+        let text = text.trim_start_matches('\u{feff}').to_owned();
         let file = || path.display();
         let read = if text.trim_start().starts_with('{') {
             of_json(&text).map(Some)
@@ -91,7 +93,7 @@ impl LawFile {
         let (mut names, mut hidden, mut tables) = (Vec::new(), Vec::new(), Vec::new());
         for ((name, body), (_, mut table)) in bodies.into_iter().zip(given) {
             if body.fill(&name, &mut table)? {
-                hidden.push(format!("{name}_mass_kg"));
+                hidden.push(mass_column(&name));
             }
             table.insert("name".to_owned(), name.clone().into());
             names.push(name);
@@ -127,6 +129,16 @@ impl LawFile {
         &self.scenario
     }
 
+    /// What there is to doubt in the laws: all that there is in that scenario, but for distances of mass centres from the nominal ones, in sizes of a body
+    /// whose mass nobody said.
+    #[must_use]
+    pub fn off_nominal(&self) -> Vec<OffNominal> {
+        let is_known = |law: &OffNominal| {
+            law.size_of().is_none_or(|body| !self.hidden.contains(&mass_column(body)))
+        };
+        self.scenario.off_nominal().into_iter().filter(is_known).collect()
+    }
+
     /// A message about the bodies of that scenario, with the names of their tables in the place of `bodies[1]` and so on.
     #[must_use]
     pub fn in_its_words(&self, message: &str) -> String {
@@ -137,6 +149,10 @@ impl LawFile {
     pub(crate) fn draws(&self, place: usize) -> Result<SimulatorDraws<'_>, ScenarioError> {
         Ok(SimulatorDraws::new(&self.scenario, place)?.hiding(&self.hidden))
     }
+}
+
+fn mass_column(body: &str) -> String {
+    format!("{body}_mass_kg")
 }
 
 fn with_names(text: &str, names: &[String]) -> String {

@@ -6,7 +6,7 @@ use std::fmt;
 
 use crate::{
     off_roots::off_nominal_roots,
-    scenario::{Axes, Dispersed, Joint, Scenario, Target, UncertainBody},
+    scenario::{Axes, Dispersed, Joint, ScalarLawFile, Scenario, Target, UncertainBody},
 };
 
 /// A factor between the mean of a law and the nominal value beside it that nobody means: a decimal point that slipped makes ten, but for
@@ -20,6 +20,8 @@ const NEAR: f64 = 0.2;
 /// A share of the size of a body, which is √(½ tr I ∕ m), the root mean square distance of its matter from the mass centre. A mass
 /// centre that is told from another point is usually farther away than that.
 const SHARE: f64 = 0.1;
+/// Bytes of a law that are written out at most: a longer one, as of many samples, is no advice.
+const LONGEST: usize = 400;
 
 /// A law whose mean is far from the nominal value that the same scenario states.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -91,12 +93,13 @@ impl OffNominal {
     }
 
     fn of_number<T>(number: &Dispersed<T>) -> Option<Self> {
-        let Dispersed { column, given, nominal, law, change, .. } = number;
+        let Dispersed { column, given, nominal, law, each, change, .. } = number;
         let of_change = change.as_ref().and_then(|change| {
             let instead = || {
-                let moved = change.form.moved(-nominal / change.unit.size());
-                let is_law = moved.about(*nominal, change.unit).is_ok();
-                (is_law && moved != change.form).then(|| format!("{given} = {moved}"))
+                let form = change.form.moved(-nominal / change.unit.size());
+                let is_law = form.about(*nominal, change.unit).is_ok() && form != change.form;
+                let meant = ScalarLawFile { form, drawn: *each }.to_string();
+                (is_law && meant.len() <= LONGEST).then(|| format!("{given} = {meant}"))
             };
             let of = [law.mean() - nominal, law.deviation()];
             Self::of_change(column.clone(), *nominal, of, instead)
@@ -129,6 +132,14 @@ impl OffNominal {
         match self {
             Self::Change { instead, .. } => instead.as_deref(),
             Self::Value { .. } | Self::Centre { .. } => None,
+        }
+    }
+
+    /// The body in whose size it is told, if it is.
+    pub(crate) fn size_of(&self) -> Option<&str> {
+        match self {
+            Self::Centre { body, .. } => Some(body),
+            Self::Change { .. } | Self::Value { .. } => None,
         }
     }
 
@@ -224,7 +235,10 @@ impl fmt::Display for OffNominal {
                 )?;
                 match instead {
                     Some(instead) => write!(f, "write {instead}"),
-                    None => f.write_str("take the nominal value off the numbers of the law"),
+                    None => f.write_str(
+                        "take the nominal value off the numbers of the law that say where it lies (mean, low, mode, high, samples; low of a \
+                         Weibull law is 0 if it is not given), and not off its widths and shapes",
+                    ),
                 }
             }
             Self::Value { quantity, nominal, mean } => write!(

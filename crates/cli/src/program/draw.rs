@@ -89,7 +89,7 @@ fn input(arguments: &DrawArgs) -> Result<Input, Box<dyn Error>> {
     let path = arguments.scenario.as_deref();
     let Some(laws) = path.map(LawFile::read).transpose()?.flatten() else {
         let scenario = scenario(path, arguments.seed)?;
-        tell_doubts(&scenario, str::to_owned);
+        tell_doubts(&scenario, scenario.off_nominal(), str::to_owned);
         return Ok(Input::Scenario(scenario));
     };
     if !arguments.models.is_empty() {
@@ -100,7 +100,7 @@ fn input(arguments: &DrawArgs) -> Result<Input, Box<dyn Error>> {
         None => laws,
     };
     let scenario = AnyScenario::Simulator(Box::new(laws.scenario().clone()));
-    tell_doubts(&scenario, |doubt| laws.in_its_words(doubt));
+    tell_doubts(&scenario, laws.off_nominal(), |doubt| laws.in_its_words(doubt));
     Ok(Input::Laws(Box::new(laws)))
 }
 

@@ -15,7 +15,7 @@ use crate::program::{
 /// Runs the verb.
 pub(crate) fn rare(arguments: &RareArgs) -> Result<ExitCode, Box<dyn Error>> {
     let scenario = scenario(arguments.scenario.as_deref(), arguments.seed)?;
-    tell_doubts(&scenario, str::to_owned);
+    tell_doubts(&scenario, scenario.off_nominal(), str::to_owned);
     let signals = Signals::watch()?;
     let options = RareOptions {
         model: arguments.model.clone(),

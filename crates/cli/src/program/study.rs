@@ -42,7 +42,7 @@ pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
     let scenario = scenario.with_kept(&Kept::new(arguments.rows.unwrap_or(kept.rows()), columns));
     let shard = arguments.shard.map(AskedShard::find).transpose()?;
     if !arguments.quiet {
-        tell_doubts(&scenario, str::to_owned);
+        tell_doubts(&scenario, scenario.off_nominal(), str::to_owned);
     }
     let signals = Signals::watch()?;
     let options = Options {

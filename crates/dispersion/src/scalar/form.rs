@@ -147,7 +147,7 @@ impl ScalarLawForm {
         }
     }
 
-    /// The same law, of values that are greater by `by`, to twelve digits: further ones are what rounding leaves.
+    /// The same law, of values greater by `by`, to twelve digits. A key that alone says where it lies, as `low` of a Weibull law, is stated then.
     #[must_use]
     pub fn moved(&self, by: f64) -> Self {
         let place = |x: f64| {
@@ -156,18 +156,23 @@ impl ScalarLawForm {
             // No sign before a zero.
             ((x + by) * scale).round() / scale + 0.0
         };
-        let value = |(key, value): &(&'static str, Value)| {
-            let is_place = matches!(self.law.key(key), Some(Of::Place | Of::Places));
-            let moved = match value {
-                Value::Number(x) if is_place => place(*x).into(),
-                Value::List(all) if is_place => {
-                    Value::List(all.iter().map(|x| place(*x)).collect())
-                }
-                Value::Number(_) | Value::List(_) | Value::Matrix(_) => value.clone(),
-            };
-            (*key, moved)
-        };
-        Self { values: self.values.iter().map(value).collect(), ..self.clone() }
+        let is_place = |of: Of| matches!(of, Of::Place | Of::Places);
+        let is_at = |key: &str| self.law.key(key).is_some_and(is_place);
+        let mut moved = Self { bare: false, ..self.clone() };
+        for (key, value) in &mut moved.values {
+            match value {
+                Value::Number(x) if is_at(key) => *x = place(*x),
+                Value::List(all) if is_at(key) => all.iter_mut().for_each(|x| *x = place(*x)),
+                Value::Number(_) | Value::List(_) | Value::Matrix(_) => {}
+            }
+        }
+        let mut places = self.law.keys.iter().filter(|key| is_place(key.of));
+        if let (Some(only), None) = (places.next(), places.next())
+            && self.values.iter().all(|(key, _)| *key != only.name)
+        {
+            moved.values.push((only.name, place(0.0).into()));
+        }
+        moved
     }
 
     fn read(&self, nominal: Option<f64>, unit: LawUnit) -> Result<ScalarLaw, Refused> {

@@ -21,6 +21,20 @@ pub(crate) struct ScalarLawFile {
     pub(crate) drawn: Each,
 }
 
+/// As in a scenario: an inline table of TOML.
+impl fmt::Display for ScalarLawFile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let form = self.form.to_string();
+        match form.strip_suffix(" }").filter(|_| !self.drawn.is_flight()) {
+            Some(open) => {
+                let drawn = toml::Value::try_from(self.drawn).map_err(|_| fmt::Error)?;
+                write!(f, "{open}, {DRAWN} = {drawn} }}")
+            }
+            None => f.write_str(&form),
+        }
+    }
+}
+
 impl Serialize for ScalarLawFile {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
