@@ -176,10 +176,10 @@ pub enum FileProblem {
         /// The heading with one, shortened.
         other: String,
     },
-    /// A line above the header states units that are not of SI, and some column states none.
+    /// A title, or a comment, states units that are not of SI, or may not be, and some column states none.
     #[error(
-        "{said:?} speaks of units other than those of SI, which are read from the headings of columns, or a row below them, alone: there each \
-         column of masses, lengths or inertias must state its own"
+        "{said:?} speaks of units that are not, or may not be, those of SI: units are read from the headings of columns, or a row below \
+         them, alone, and there each column of masses, lengths or inertias must state its own"
     )]
     TitleUnits {
         /// The line, shortened.

@@ -183,7 +183,7 @@ pub(crate) fn headers(text: &str, comments: bool) -> impl Iterator<Item = (usize
 }
 
 /// The lines of a text with their offsets.
-fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+pub(crate) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let mut at = 0;
     text.split_inclusive('\n').map(move |line| {
         at += line.len();

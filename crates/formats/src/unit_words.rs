@@ -1,16 +1,23 @@
 //! Whether words speak of a unit of measurement, or are the name of a thing: `lbf in s2`, and `FM-1` of a series.
 
-use crate::units::{LENGTHS, MASSES};
+use crate::{
+    table_terms::dimension_of,
+    units::{LENGTHS, MASSES},
+};
 
 /// What a word is where units stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+pub(crate) enum Kind {
     /// A unit of mass or force.
     Amount,
     Length,
     Time,
     /// A system of units.
     System,
+    /// What says that units are meant: `unit`, `uom`.
+    Units,
+    /// What is measured: `mass`.
+    Measured,
     /// What stands beside units, and is none.
     Beside,
 }
@@ -29,43 +36,63 @@ const SYMBOLS: [(Kind, &[&str]); 3] = [
 ];
 
 /// Whole words, in small letters and without the `s` of many.
-const WORDS: [(Kind, &[&str]); 5] = [
+const WORDS: [(Kind, &[&str]); 6] = [
     (
         Kind::Amount,
-        &["gram", "gramme", "kilo", "pound", "ton", "tonne", "ounce", "newton", "dyne", "poundal"],
+        &[
+            "gram", "gramm", "gramme", "kilo", "pound", "ton", "tonne", "ounce", "newton", "dyne",
+            "poundal",
+        ],
     ),
     (Kind::Length, &["metre", "meter", "inch", "inche", "foot", "feet", "yard", "micron"]),
     (Kind::Time, &["second"]),
     (
         Kind::System,
         &[
-            "si", "mks", "mmks", "mmgs", "mgs", "cgs", "ips", "fps", "imperial", "english",
-            "british", "metric", "us", "usc", "uscs",
+            "si",
+            "mks",
+            "mmks",
+            "mmgs",
+            "mgs",
+            "cgs",
+            "ips",
+            "fps",
+            "imperial",
+            "english",
+            "british",
+            "metric",
+            "us",
+            "usc",
+            "uscs",
+            "customary",
         ],
     ),
+    (Kind::Units, &["unit", "uom", "einheit", "einheiten", "unité", "unidad", "unidade"]),
     (
         Kind::Beside,
         &[
-            "unit",
-            "system",
-            "customary",
-            "per",
-            "square",
-            "squared",
-            "sq",
-            "of",
-            "and",
-            "all",
-            "force",
-            "mass",
-            "masse",
-            "length",
-            "inertia",
-            "moment",
-            "product",
-            "value",
+            "system", "per", "square", "squared", "sq", "of", "and", "all", "are", "is", "the",
+            "for", "used", "given", "force", "masse", "value",
         ],
     ),
+];
+
+/// The words and symbols of those that are units of SI, or of a system that has them.
+const SI: [&str; 14] = [
+    "kg",
+    "kgs",
+    "kilo",
+    "kilogram",
+    "kilogramm",
+    "kilogramme",
+    "m",
+    "metre",
+    "meter",
+    "n",
+    "newton",
+    "si",
+    "mks",
+    "metric",
 ];
 
 /// What may stand before a word for a unit.
@@ -78,11 +105,19 @@ const CERTAIN: [&str; 6] = ["oz", "lb", "mm", "cm", "slinch", "mg"];
 const CERTAIN_IN_CAPITALS: [&str; 8] = ["kg", "kgs", "lbs", "lbm", "lbf", "kgf", "slug", "slugs"];
 
 /// Letters that stand together, or digits.
-struct Run<'a> {
-    text: &'a str,
-    is_capital: bool,
+pub(crate) struct Run<'a> {
+    pub(crate) text: &'a str,
+    /// What stands between it and the one before.
+    pub(crate) gap: &'a str,
+    pub(crate) is_capital: bool,
     /// Whether a 2 follows it without anything between.
-    is_squared: bool,
+    pub(crate) is_squared: bool,
+}
+
+impl Run<'_> {
+    pub(crate) fn is_number(&self) -> bool {
+        self.text.starts_with(char::is_numeric)
+    }
 }
 
 /// Whether a text speaks of a unit: by a square behind letters, by a word that is sure to be a unit, or by having no other words
@@ -106,9 +141,9 @@ fn has_square(text: &str) -> bool {
 }
 
 /// The runs of letters and of digits.
-fn runs(text: &str) -> Vec<Run<'_>> {
+pub(crate) fn runs(text: &str) -> Vec<Run<'_>> {
     let mut runs = Vec::new();
-    let mut rest = text;
+    let (mut rest, mut gap) = (text, 0);
     while let Some(first) = rest.chars().next() {
         let is_of = |c: char| {
             if first.is_alphabetic() { c.is_alphabetic() } else { c.is_numeric() }
@@ -118,14 +153,17 @@ fn runs(text: &str) -> Vec<Run<'_>> {
         if end > 0 {
             let digits = after.len() - after.trim_start_matches(char::is_numeric).len();
             let is_capital = !run.contains(char::is_lowercase);
-            runs.push(Run { text: run, is_capital, is_squared: &after[..digits] == "2" });
+            let gap = &text
+                [std::mem::replace(&mut gap, text.len() - after.len())..text.len() - rest.len()];
+            runs.push(Run { text: run, gap, is_capital, is_squared: &after[..digits] == "2" });
         }
         rest = after;
     }
     runs
 }
 
-fn is_certain(run: &Run<'_>) -> bool {
+/// Whether a word is sure to be a unit, whatever stands beside it.
+pub(crate) fn is_certain(run: &Run<'_>) -> bool {
     let word = run.text.to_lowercase();
     let is_symbol = |list: &[&str]| list.contains(&word.as_str());
     let is_length = || symbols(Kind::Length).any(|symbol| symbol == word);
@@ -140,7 +178,7 @@ fn are_units(runs: &[Run<'_>]) -> bool {
     let mut before: Option<&Run<'_>> = None;
     let mut needs_amount = false;
     for run in runs {
-        if run.text.starts_with(char::is_numeric) {
+        if run.is_number() {
             // A number is the power of what stands before it, or that of a thing.
             let is_power = matches!(found.last(), Some((Kind::Length | Kind::Time, _)));
             let Some(before) = before.take().filter(|_| is_power && run.text == "2") else {
@@ -151,11 +189,7 @@ fn are_units(runs: &[Run<'_>]) -> bool {
             continue;
         }
         let word = run.text.to_lowercase();
-        let Some(parts) =
-            whole(&word).map(|kind| vec![(kind, word.as_str())]).or_else(|| joined(&word, has_two))
-        else {
-            return false;
-        };
+        let Some(parts) = parts(&word, has_two) else { return false };
         // A capital letter is a name, or a part of one: `CM-T`.
         if run.is_capital && word.chars().count() == 1 && !has_two {
             return false;
@@ -166,21 +200,32 @@ fn are_units(runs: &[Run<'_>]) -> bool {
     }
     let is_unit = |(kind, is_clear): &(Kind, bool)| match kind {
         Kind::Amount | Kind::Length | Kind::System => *is_clear,
-        Kind::Time | Kind::Beside => false,
+        Kind::Time | Kind::Units | Kind::Measured | Kind::Beside => false,
     };
     let has_amount = found.iter().any(|(kind, _)| *kind == Kind::Amount);
     found.iter().any(is_unit) && (has_amount || !needs_amount)
 }
 
+/// What the parts of a word in small letters are, if it is a unit, or a word that stands beside one.
+pub(crate) fn parts(word: &str, has_two: bool) -> Option<Vec<(Kind, &str)>> {
+    whole(word).map(|kind| vec![(kind, word)]).or_else(|| joined(word, has_two))
+}
+
+/// Whether a unit or a system of units, in small letters, is one of SI.
+pub(crate) fn is_si(word: &str) -> bool {
+    [word, word.strip_suffix('s').unwrap_or(word)].iter().any(|one| SI.contains(one))
+}
+
 /// Every symbol of a kind.
 fn symbols(kind: Kind) -> impl Iterator<Item = &'static str> {
-    let read: Vec<&str> = match kind {
-        Kind::Amount => MASSES.iter().map(|(name, _)| *name).collect(),
-        Kind::Length => LENGTHS.iter().map(|(name, _)| *name).collect(),
-        Kind::Time | Kind::System | Kind::Beside => Vec::new(),
+    let read: &[(&str, f64)] = match kind {
+        Kind::Amount => &MASSES,
+        Kind::Length => &LENGTHS,
+        Kind::Time | Kind::System | Kind::Units | Kind::Measured | Kind::Beside => &[],
     };
     let others = SYMBOLS.iter().filter(move |(of, _)| *of == kind);
-    read.into_iter().chain(others.flat_map(|(_, symbols)| symbols.iter().copied()))
+    let others = others.flat_map(|(_, symbols)| symbols.iter().copied());
+    read.iter().map(|(name, _)| *name).chain(others)
 }
 
 /// What a word in small letters is, if it is one symbol or one word.
@@ -194,7 +239,8 @@ fn whole(word: &str) -> Option<Kind> {
     let names = [Some(word), Some(one), bare];
     let is_name =
         |(_, list): &&(Kind, &[&str])| names.iter().flatten().any(|name| list.contains(name));
-    WORDS.iter().find(is_name).map(|(kind, _)| *kind)
+    let known = WORDS.iter().find(is_name).map(|(kind, _)| *kind);
+    known.or_else(|| dimension_of(word).map(|_| Kind::Measured))
 }
 
 /// The symbols of a mass or a force, a length and perhaps a time that a word is made of: `ozin`, `lbfins`. Without a square, one letter

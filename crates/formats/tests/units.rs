@@ -247,26 +247,53 @@ fn a_kind_of_number_without_a_unit_is_never_guessed_beside_another() {
         format!("name,mass{m},Cx{cx},Cy{c},Cz{c},Ixx{ixx},Iyy{i},Izz{i}\na,1,2,3,4,5,6,7\n")
     };
     let picks = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9]);
-    for (pick, title) in picks.flat_map(|pick| {
-        ["", "Table 3\n", "All units: lb, in, lb-in2\n", "# units = mm\n"].map(|t| (pick, t))
+    // A title, and whether it speaks of other units. Comments may stand below the header, too.
+    const TITLES: [(&str, bool); 12] = [
+        ("", false),
+        ("Table 3\n", false),
+        ("# Unit FT-2 of the series\n", false),
+        ("# Units: SI\n", false),
+        ("All units: lb, in, lb-in2\n", true),
+        ("# units = mm\n", true),
+        ("# Mass in lb, lengths in inches\n", true),
+        ("Mass Properties (lbm, in)\n", true),
+        (",Mass [kg],Centre of gravity [mm],,,Moments of inertia [kg·mm²],,\n", true),
+        (",kg,mm,mm,mm,kg mm2,kg mm2,kg mm2\n", true),
+        ("# units,kg,mm,mm,mm,kg mm2,kg mm2,kg mm2\n", true),
+        ("# kg,mm,mm,mm,kg mm2,kg mm2,kg mm2\n", true),
+    ];
+    for (pick, (title, is_other), below) in picks.flat_map(|pick| {
+        let places = move |(title, is_other): (&'static str, bool)| {
+            let below =
+                [false, true].into_iter().filter(move |below| !below || title.starts_with('#'));
+            below.map(move |below| (pick, (title, is_other), below))
+        };
+        TITLES.into_iter().flat_map(places)
     }) {
         let lacks = |of: &[usize]| {
             let mixed = of.iter().any(|i| pick[*i] == 0) && of.iter().any(|i| pick[*i] == 2);
-            mixed || title.contains("units") && of.iter().any(|i| pick[*i] == 0)
+            mixed || is_other && of.iter().any(|i| pick[*i] == 0)
+        };
+        let with_title = |table: String| {
+            if below {
+                table.replacen('\n', &format!("\n{title}"), 1)
+            } else {
+                format!("{title}{table}")
+            }
         };
         for all in [true, false] {
-            let table = format!("{title}{}", headings(pick, all));
+            let table = with_title(headings(pick, all));
             // `check` reads no mass centre.
             let found = checked(table.as_bytes()).map_err(|error| error.to_string());
             assert_eq!(found.is_err(), lacks(&[0, 2]), "{table}{found:?}");
             let fitted = ten(table.as_bytes()).map_err(|error| error.to_string());
             assert_eq!(fitted.is_err(), lacks(&[0, 1, 2]), "{table}{fitted:?}");
             for message in [found.err(), fitted.err()].into_iter().flatten() {
-                let said = ["states no unit, and column", "speaks of units other than"];
+                let said = ["states no unit, and column", "speaks of units that are not"];
                 assert!(said.iter().any(|said| message.contains(said)), "{message}");
             }
         }
-        let table = format!("{title}{}", headings(pick, true));
+        let table = with_title(headings(pick, true));
         let list = PartsTable::read(table.as_bytes(), None).map_err(|error| error.to_string());
         assert_eq!(list.is_err(), lacks(&[0, 1, 2]), "{table}{list:?}");
     }
