@@ -175,11 +175,17 @@ const SEPARATORS: [char; 3] = [',', ';', '\t'];
 /// Most lines above a header, titles and the like, that are looked through for it.
 const TITLES: usize = 100;
 
-/// The lines that a header may be, with their offsets: the first ones that are neither blank nor comments, or, where there is no
-/// other, the first comments.
-pub(crate) fn headers(text: &str, comments: bool) -> impl Iterator<Item = (usize, &str)> {
-    let is_one = move |line: &str| if comments { line.starts_with('#') } else { !is_comment(line) };
-    lines(text).filter(move |(_, line)| is_one(line)).take(TITLES)
+/// The lines that a header may be, with their offsets: the first ones that are neither blank nor comments.
+pub(crate) fn headers(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    lines(text).filter(|(_, line)| !is_comment(line)).take(TITLES)
+}
+
+/// What the first comments hold, with its offsets: one of them may be the header where no other line is.
+pub(crate) fn commented_headers(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    lines(text).filter(|(_, line)| line.starts_with('#')).take(TITLES).map(|(at, line)| {
+        let content = line.trim_start_matches(['#', ' ', '\t']);
+        (at + line.len() - content.len(), content)
+    })
 }
 
 /// The lines of a text with their offsets.

@@ -7,7 +7,7 @@ use crate::{
     heading_sign::without_sign,
     parts::{Unread, heading::is_spread},
     product_heading::is_unread_product,
-    rows::{Field, Rows, headers, is_blank, without_marks},
+    rows::{Field, Rows, commented_headers, headers, is_blank, without_marks},
     spread,
     table_terms::{InertiaPoint, TableTerms},
     ten_heading::{TenCentre, TenHeading},
@@ -359,23 +359,16 @@ fn nearly(text: &Text, row: &[Field]) -> Option<String> {
 /// Finds the header, below any titles: what it says, and the rows below it. Where there is none, it may be a
 /// comment, as many programs write it.
 pub(crate) fn find_header(text: &Text) -> Result<(Header, Rows<'_>), Refusal> {
-    let headers = |comments| headers(text.as_str(), comments);
-    for (at, line) in headers(false) {
+    let rows = || headers(text.as_str());
+    for (at, line) in rows().chain(commented_headers(text.as_str())) {
         if let Some(found) = header_at(text, at, line)? {
             let some_lack = found.0.mass.is_lacking() || found.0.inertia.is_lacking();
             title_units::refused(text, at, some_lack)?;
             return Ok(found);
         }
     }
-    for (at, line) in headers(true) {
-        let content = line.trim_start_matches(['#', ' ', '\t']);
-        let start = at + line.len() - content.len();
-        if let Some(found) = header_at(text, start, content)? {
-            return Ok(found);
-        }
-    }
-    let near = headers(false)
-        .find_map(|(at, line)| nearly(text, &Rows::at(text.as_str(), at, line).row().ok()?));
+    let near =
+        rows().find_map(|(at, line)| nearly(text, &Rows::at(text.as_str(), at, line).row().ok()?));
     let mut message = "a table must have the columns ixx, iyy and izz".to_owned();
     if let Some(near) = near {
         message = format!("{message}: {near}");

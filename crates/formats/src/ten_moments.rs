@@ -9,10 +9,11 @@ use crate::{
     error::Refusal,
     products_comment::stated_products,
     read_text,
-    rows::{Field, Rows},
+    rows::{Field, Rows, commented_headers},
     ten_heading::{TenCentre, TenHeading},
     ten_table::TenColumns,
     text::Text,
+    title_units,
     units::Unit,
 };
 
@@ -40,7 +41,7 @@ struct Fields {
 impl TenMomentsFile {
     /// Reads `{"parameters": "linear", "mean": [10], "covariance": [[10] × 10]}` (or `"deviations": [10]` where nothing is correlated) as
     /// JSON, the same keys as TOML, or a CSV with the mean in its first row and the covariance in the ten below. A header may stand above them,
-    /// which names the ten in any order and in any unit that is read, and a line `# products = integrals`.
+    /// which names the ten in any order and in any unit that is read and may be a comment, and a line `# products = integrals`.
     ///
     /// # Errors
     /// The file cannot be read, or does not hold these numbers; a heading is of none of the ten, or a deviation is negative.
@@ -87,10 +88,12 @@ impl TenMomentsFile {
         let mut rows = Rows::new(text.as_str());
         let mut numbers: Vec<[f64; 10]> = Vec::new();
         let mut header: Option<Columns> = None;
+        let mut top = None;
         while let Some(fields) = rows.next() {
             let fields = fields
                 .map_err(|error| malformed(&format!("line {}: {error}", text.line(error.at()))))?;
             let cell = |at: &Field| at.of(text.as_str()).trim();
+            top = top.or(fields.first().map(|field| field.start));
             let read: Vec<Option<f64>> = fields.iter().map(|f| cell(f).parse().ok()).collect();
             if numbers.is_empty() && header.is_none() && read.iter().all(Option::is_none) {
                 header = Some(Columns::of(&fields.iter().map(cell).collect::<Vec<_>>())?);
@@ -111,7 +114,13 @@ impl TenMomentsFile {
         };
         let (mean, rest) = numbers.split_first().ok_or_else(wrong)?;
         let covariance = <[[f64; 10]; 10]>::try_from(rest).map_err(|_| wrong())?;
-        let columns = header.unwrap_or_default();
+        let (columns, top) = match header {
+            Some(header) => (header, top.unwrap_or_default()),
+            None => {
+                Columns::of_comment(&text)?.unwrap_or((Columns::default(), top.unwrap_or_default()))
+            }
+        };
+        title_units::refused(&text, top, columns.some_lack)?;
         // In the order of the ten and in SI, products as tensor entries: the rows of the covariance as its columns.
         let of = |i: usize| {
             let (at, unit) = columns.places[i];
@@ -149,12 +158,14 @@ impl TenMomentsFile {
 struct Columns {
     places: [(usize, f64); 10],
     centre: Option<TenCentre>,
+    /// Whether there are some of which none states a unit.
+    some_lack: bool,
 }
 
 /// Without a header they stand in their order, in SI.
 impl Default for Columns {
     fn default() -> Self {
-        Self { places: std::array::from_fn(|i| (i, 1.0)), centre: None }
+        Self { places: std::array::from_fn(|i| (i, 1.0)), centre: None, some_lack: true }
     }
 }
 
@@ -174,7 +185,21 @@ impl Columns {
         let places = columns.places(0..10)?;
         columns.check_units(&[])?;
         let place = |i: usize| (places[i], columns.unit(i));
-        Ok(Self { places: std::array::from_fn(place), centre: columns.centre() })
+        let (centre, some_lack) = (columns.centre(), columns.some_lack());
+        Ok(Self { places: std::array::from_fn(place), centre, some_lack })
+    }
+
+    /// Those that a comment names, as programs write a header, and where it stands.
+    fn of_comment(text: &Text) -> Result<Option<(Self, usize)>, TenMomentsError> {
+        let named = |(at, line)| {
+            let row = Rows::at(text.as_str(), at, line).row().ok()?;
+            let cells: Vec<&str> = row.iter().map(|at| at.of(text.as_str()).trim()).collect();
+            let known = cells.iter().filter(|cell| TenHeading::of(cell).is_some()).count();
+            // A comment may name some of them.
+            let is_header = cells.len() == 10 && known > 5;
+            is_header.then(|| Ok((Self::of(&cells)?, at)))
+        };
+        commented_headers(text.as_str()).find_map(named).transpose()
     }
 }
 

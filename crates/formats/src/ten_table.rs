@@ -281,6 +281,11 @@ impl TenColumns {
         }
     }
 
+    /// Whether there are columns of some kind of which none states a unit.
+    pub(crate) fn some_lack(&self) -> bool {
+        self.units.iter().any(SharedUnit::is_lacking)
+    }
+
     /// What the three after the mass are; nothing if none of them is there.
     pub(crate) fn centre(&self) -> Option<TenCentre> {
         self.centre.as_ref().map(|(centre, _)| *centre)

@@ -218,8 +218,11 @@ proptest! {
         columns in columns(),
         numbers in prop::collection::vec(prop::array::uniform10(-9.0..9.0_f64), 11),
         has_header in any::<bool>(),
+        mark in select(&["", "# ", "#"][..]),
         integrals in 0..3_usize,
         lost in any::<Index>(),
+        title in select(&["# All units: lb, in\n", "# Mass in g\n", "# FT-2\n"][..]),
+        is_above in any::<bool>(),
     ) {
         let columns = if has_header {
             columns
@@ -232,7 +235,7 @@ proptest! {
             rows.push(columns.row(|place| numbers[1 + from][place].to_string()));
         }
         let line = "# products = integrals\n";
-        let head = if has_header { joined(std::slice::from_ref(&heading)) } else { String::new() };
+        let head = if has_header { format!("{mark}{}", joined(std::slice::from_ref(&heading))) } else { String::new() };
         let text = match integrals {
             0 => format!("{head}{}", joined(&rows)),
             1 => format!("{line}{head}{}", joined(&rows)),
@@ -257,11 +260,21 @@ proptest! {
                 prop_assert!(is_near(read.covariance()[i][j], expected), "{text}{i} {j}");
             }
         }
+        // A title does not tell the units of the columns.
+        std::fs::write(&path, if is_above { format!("{title}{text}") } else { format!("{text}{title}") }).unwrap();
+        let is_told = (0..3).all(|kind| columns.units[kind] > 0) || title.contains("FT-2");
+        match TenMomentsFile::read(&path) {
+            Ok(again) => prop_assert!(is_told && again == read, "{}", text),
+            Err(error) => {
+                let error = error.to_string();
+                prop_assert!(!is_told && error.contains("speaks of units that are not"), "{}{}", text, error);
+            }
+        }
         // A header that does not name all ten is refused.
         if has_header {
             let mut heading = heading;
             heading[lost.index(10)] = "time".to_owned();
-            std::fs::write(&path, joined(&[vec![heading], rows].concat())).unwrap();
+            std::fs::write(&path, format!("{mark}{}", joined(&[vec![heading], rows].concat()))).unwrap();
             let error = TenMomentsFile::read(&path).unwrap_err().to_string();
             prop_assert!(error.contains("\"time\" is none of the ten"), "{error}");
         }

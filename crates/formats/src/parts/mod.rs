@@ -374,7 +374,7 @@ fn header(text: &Text) -> Result<Option<Header<'_>>, PartsError> {
             Err(_) => None,
         }
     };
-    let (first, mut rows) = match headers(text.as_str(), false).find_map(at) {
+    let (first, mut rows) = match headers(text.as_str()).find_map(at) {
         Some(found) => found?,
         None => {
             let mut rows = Rows::new(text.as_str());
