@@ -1,6 +1,18 @@
 //! What comments in a table say of the sign of its products.
 
-use crate::{Products, body::shortened, error::Refusal, spread::words, text::Text};
+use crate::{
+    Products,
+    body::{entry_of, shortened},
+    error::Refusal,
+    spread::words,
+    text::Text,
+};
+
+/// What the products are called as a whole, where `product` may be that of a company.
+const NAMES: [&str; 4] = ["products", "poi", "pois", "poiconv"];
+
+/// Words that speak of a sign.
+const OF_SIGNS: [&str; 4] = ["sign", "signs", "convention", "conventions"];
 
 /// What may be said of products.
 const ALLOWED: &str = "tensor (I12 = -∫xy dm) or integrals (+∫xy dm)";
@@ -73,11 +85,15 @@ fn is_around(c: char) -> bool {
 
 fn said(comment: &str) -> Said {
     let comment = comment.to_lowercase();
-    if !speaks_of_products(&comment) {
+    // `sign convention: integrals` is that of products.
+    let is_convention = |(key, value): (&str, &str)| {
+        split(key).any(is_of_sign) && split(key).all(is_beside) && !known(value).is_empty()
+    };
+    if !speaks_of_products(&comment) && !comment.split_once(['=', ':']).is_some_and(is_convention) {
         return Said::Nothing;
     }
     if let Some((key, value)) = assigned(&comment) {
-        let is_key = key.trim() == "products" && comment[key.len()..].starts_with('=');
+        let is_key = NAMES.contains(&key.trim()) && comment[key.len()..].starts_with('=');
         match value {
             "+" => return Said::Clear(Products::Integrals),
             "-" | "−" => return Said::Clear(Products::TensorEntries),
@@ -115,8 +131,23 @@ fn split(text: &str) -> impl Iterator<Item = &str> {
     words(text).filter(|word| !word.is_empty())
 }
 
+/// Whether a word is that of products, or the name of one.
 fn is_products(word: &str) -> bool {
-    ["product", "products", "poiconv"].contains(&word)
+    // `Ixy`, and what is left of `I_xy`, but not the number 12.
+    let is_entry = |name: &str| entry_of(name).is_some_and(|entry| entry >= 3);
+    word == "product"
+        || NAMES.contains(&word)
+        || is_entry(word)
+        || word.len() == 2 && word.starts_with(char::is_alphabetic) && is_entry(&format!("i{word}"))
+}
+
+fn is_of_sign(word: &str) -> bool {
+    OF_SIGNS.contains(&word)
+}
+
+/// Whether a word may stand beside that of products where they are given a sign.
+fn is_beside(word: &str) -> bool {
+    is_of_sign(word) || ["of", "the", "for", "are", "and", "inertia"].contains(&word)
 }
 
 fn speaks_of_products(text: &str) -> bool {
@@ -157,24 +188,21 @@ fn is_negated(comment: &str) -> bool {
 /// Whether a comment that has none of the known words gives the products a sign nevertheless, as one in which they are misspelt:
 /// `products: integral`, `product convention: positive`. `product: widget 7` and `product sign-off: J. S.` do not.
 fn is_vague(comment: &str) -> bool {
-    const OF_SIGNS: [&str; 5] = ["sign", "signs", "convention", "conventions", "inertia"];
-    const OTHERS: [&str; 4] = ["of", "the", "for", "are"];
     const SIGNS: [&str; 7] =
         ["positive", "negative", "plus", "minus", "integral", "tensors", "tensorial"];
     const NONE: [&str; 4] = ["none", "no", "zero", "0"];
     let Some((key, value)) = assigned(comment) else { return false };
-    let is_of_sign = |word: &str| OF_SIGNS.contains(&word);
-    let is_key = |word: &str| is_products(word) || is_of_sign(word) || OTHERS.contains(&word);
+    let is_key = |word: &str| is_products(word) || is_beside(word);
     if !split(key).next().is_some_and(is_products) || !split(key).all(is_key) {
         return false;
     }
     let mut words = split(value);
     let one = words.next().filter(|_| words.next().is_none());
-    let is_one = |word: &str| key.trim() == "products" && !NONE.contains(&word);
+    let is_one = |word: &str| NAMES.contains(&key.trim()) && !NONE.contains(&word);
     let is_sign = |word: &str| SIGNS.contains(&word) || word.starts_with("convention");
     one.is_some_and(|word| is_one(word) || is_sign(word))
         || (key.trim() != "product" && (value.contains('∫') || split(value).any(is_sign)))
-        || split(key).any(|word| is_of_sign(word) && word != "inertia")
+        || split(key).any(is_of_sign)
 }
 
 #[cfg(test)]
@@ -191,7 +219,31 @@ mod tests {
     const INTEGRALS: Option<Option<Products>> = Some(Some(Products::Integrals));
 
     /// Comments, and what they say: a convention, nothing, or what is refused.
-    const LINES: [(&str, Option<Option<Products>>); 50] = [
+    const LINES: [(&str, Option<Option<Products>>); 74] = [
+        ("# POI = integrals\n", INTEGRALS),
+        ("# POIs: tensor\n", TENSOR),
+        ("# POI: +\n", INTEGRALS),
+        ("# POI sign convention: integrals\n", INTEGRALS),
+        ("# Sign convention: tensor entries\n", TENSOR),
+        ("# Convention = integrals\n", INTEGRALS),
+        ("# Ixy, Ixz, Iyz are positive integrals\n", INTEGRALS),
+        ("# I_xy and the others are integrals\n", INTEGRALS),
+        ("# I12 I13 I23: integrals\n", INTEGRALS),
+        ("# I_xy: tensor\n", TENSOR),
+        ("# 12 bodies of the tensor\n", Some(None)),
+        ("# entries of the tensor (I12 = -∫xy dm)\n", TENSOR),
+        ("# name,mass,ixx,iyy,izz,ixy,ixz,iyz,sign\n", Some(None)),
+        ("# Ixy = 0.5 by CAD\n", Some(None)),
+        ("# sign: +\n", Some(None)),
+        ("# tensor of inertia, sign convention as in CAD\n", Some(None)),
+        ("# Sign convention: not tensor\n", None),
+        ("# sign convention: right-handed\n", Some(None)),
+        ("# Ixy was measured on the integral rig\n", Some(None)),
+        ("# POI = integral\n", None),
+        ("# POI: not tensor\n", None),
+        ("# Ixy = -∫xy dm\n", None),
+        ("# Ixy, Ixz and Iyz: positive\n", None),
+        ("# Ixy and Ixz are -integrals\n", None),
         ("# products = integrals, not tensor entries\n", INTEGRALS),
         ("#Products=\"tensor\"\r\n", TENSOR),
         ("# products: integrals\n", INTEGRALS),
