@@ -6,7 +6,7 @@ use crate::{
     error::Refusal,
     rows::{is_comment, lines},
     text::Text,
-    unit_words::{Kind, Run, is_certain, is_si, parts, runs},
+    unit_words::{Kind, Run, is_certain, is_name, is_si, parts, runs},
 };
 
 /// Bytes of the longest line that is judged, and most lines that are: longer ones are no titles.
@@ -108,7 +108,7 @@ impl Said {
             // Elsewhere it is a word between others.
             let is_inch = is_whole && at + 1 == phrase.len() || word.run.is_squared;
             word.parts.iter().any(|(kind, part)| match kind {
-                _ if is_si(part) => false,
+                _ if is_si(part) || is_name(part) => false,
                 Kind::Amount | Kind::Length if !is_clear => false,
                 Kind::Length if word.is_in() => is_inch,
                 Kind::Amount | Kind::Length => is_stated || !is_beside || !DOUBTFUL.contains(part),
@@ -182,9 +182,9 @@ fn are_units(words: &[Word<'_>]) -> Vec<bool> {
         };
         let is_short = word.run.is_capital || word.run.text.chars().count() == 1;
         let has_number = next.is_some_and(|next| next.run.is_number());
-        let is_name = is_short && has_number && !is_power(at + 1, has_amount);
-        has_amount |= word.is_of(Kind::Amount) && !is_name;
-        !word.parts.is_empty() && !is_quantity && !is_name
+        let is_thing = is_short && has_number && !is_power(at + 1, has_amount);
+        has_amount |= word.is_of(Kind::Amount) && !is_thing;
+        !word.parts.is_empty() && !is_quantity && !is_thing
     };
     words.iter().enumerate().map(one).collect()
 }
@@ -348,6 +348,7 @@ mod tests {
             "Tank, left foot",
             "# Written in English",
             "# g = 9.81",
+            "Jones, Dan",
             "Part,m,Cx,Cy,Cz",
         ] {
             assert!(!speaks_of_others(line), "{line}");

@@ -27,8 +27,8 @@ const SYMBOLS: [(Kind, &[&str]); 3] = [
     (
         Kind::Amount,
         &[
-            "kgs", "gm", "gms", "gr", "lbf", "oz", "ozm", "ozf", "kgf", "kp", "kn", "n", "slinch",
-            "dyn", "pdl", "cwt",
+            "kgs", "gm", "gms", "gr", "lbf", "oz", "ozm", "ozf", "kgf", "tonf", "kp", "kn", "n",
+            "mn", "cn", "dan", "slinch", "dyn", "pdl", "cwt",
         ],
     ),
     (Kind::Length, &["dm", "km", "um", "µm", "μm", "yd"]),
@@ -71,8 +71,8 @@ const WORDS: [(Kind, &[&str]); 6] = [
     (
         Kind::Beside,
         &[
-            "system", "per", "square", "squared", "sq", "of", "and", "all", "are", "is", "the",
-            "for", "used", "given", "force", "masse", "value",
+            "system", "per", "x", "square", "squared", "sq", "of", "and", "all", "are", "is",
+            "the", "for", "used", "given", "force", "masse", "value",
         ],
     ),
 ];
@@ -194,7 +194,7 @@ fn are_units(runs: &[Run<'_>]) -> bool {
         if run.is_capital && word.chars().count() == 1 && !has_two {
             return false;
         }
-        let is_clear = |part: &str| part != "n" && (part.chars().count() > 1 || !run.is_capital);
+        let is_clear = |part: &str| !is_name(part) && (part.chars().count() > 1 || !run.is_capital);
         found.extend(parts.into_iter().map(|(kind, part)| (kind, is_clear(part))));
         before = Some(run);
     }
@@ -214,6 +214,11 @@ pub(crate) fn parts(word: &str, has_two: bool) -> Option<Vec<(Kind, &str)>> {
 /// Whether a unit or a system of units, in small letters, is one of SI.
 pub(crate) fn is_si(word: &str) -> bool {
     [word, word.strip_suffix('s').unwrap_or(word)].iter().any(|one| SI.contains(one))
+}
+
+/// Whether a unit is a name as well, so that other units must stand beside it: Dan.
+pub(crate) fn is_name(part: &str) -> bool {
+    ["n", "mn", "cn", "dan"].contains(&part)
 }
 
 /// Every symbol of a kind.
@@ -243,19 +248,31 @@ fn whole(word: &str) -> Option<Kind> {
     known.or_else(|| dimension_of(word).map(|_| Kind::Measured))
 }
 
-/// The symbols of a mass or a force, a length and perhaps a time that a word is made of: `ozin`, `lbfins`. Without a square, one letter
-/// is no mass there: `tin` is a word.
+/// The symbols of a mass or a force, a length and perhaps a time that a word is made of, and an x between them: `ozin`, `lbfins`, `gxmm`,
+/// `mmNs`. One letter is a mass there before a length and with a square alone: `tin` is a word, and the CMG a thing.
 fn joined(word: &str, has_two: bool) -> Option<Vec<(Kind, &str)>> {
-    symbols(Kind::Amount).filter(|amount| has_two || amount.len() > 1).find_map(|amount| {
-        let rest = word.strip_prefix(amount)?;
-        symbols(Kind::Length).find_map(|length| {
-            let time = rest.strip_prefix(length)?;
-            let is_time = time.is_empty() || symbols(Kind::Time).any(|symbol| symbol == time);
-            is_time.then(|| {
-                vec![(Kind::Amount, &word[..amount.len()]), (Kind::Length, &rest[..length.len()])]
+    let orders = [[Kind::Amount, Kind::Length], [Kind::Length, Kind::Amount]];
+    orders.into_iter().find_map(|[first, second]| {
+        symbols(first).find_map(|one| {
+            let rest = behind_cross(word.strip_prefix(one)?);
+            symbols(second).find_map(|other| {
+                let time = behind_cross(rest.strip_prefix(other)?);
+                let is_time = time.is_empty() || symbols(Kind::Time).any(|symbol| symbol == time);
+                let is_mass = if first == Kind::Amount {
+                    has_two || one.len() > 1
+                } else {
+                    other.len() > 1 || other == "n" && !time.is_empty()
+                };
+                let parts = || vec![(first, &word[..one.len()]), (second, &rest[..other.len()])];
+                (is_time && is_mass).then(parts)
             })
         })
     })
+}
+
+/// What stands behind an x, if that parts it from what stands before.
+fn behind_cross(rest: &str) -> &str {
+    rest.strip_prefix('x').filter(|behind| !behind.is_empty()).unwrap_or(rest)
 }
 
 #[cfg(test)]
@@ -263,12 +280,13 @@ mod tests {
     use super::*;
     use proptest::{prelude::*, sample::select};
 
-    const AMOUNTS: [&str; 22] = [
-        "kg", "g", "mg", "Mg", "MG", "t", "lb", "lbm", "lbf", "slug", "slinch", "oz", "ozf", "gr",
-        "gm", "ton", "tonne", "pound", "pounds", "N", "kgf", "grams",
+    const AMOUNTS: [&str; 27] = [
+        "mN", "daN", "cN", "kN", "tonf", "kg", "g", "mg", "Mg", "MG", "t", "lb", "lbm", "lbf",
+        "slug", "slinch", "oz", "ozf", "gr", "gm", "ton", "tonne", "pound", "pounds", "N", "kgf",
+        "grams",
     ];
     const LENGTHS: [&str; 8] = ["m", "cm", "mm", "in", "ft", "inch", "foot", "meter"];
-    const BETWEEN: [&str; 8] = [" ", "·", "*", "-", "_", "⋅", ".", " * "];
+    const BETWEEN: [&str; 9] = [" x ", " ", "·", "*", "-", "_", "⋅", ".", " * "];
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(4000))]
@@ -289,7 +307,7 @@ mod tests {
             let unit = if is_upper { unit.to_uppercase() } else { unit };
             let text = format!("{before}{unit}{after}");
             // The TM-2 is a thing.
-            let is_name = is_upper && amount.len() == 1 && length.len() == 1 && square == "2" && before != "in ";
+            let is_name = is_upper && (amount.len() == 1 || is_name(&amount.to_lowercase())) && length.len() == 1 && square == "2" && before != "in ";
             prop_assert_eq!(speaks_of_a_unit(&text), !is_name, "{}", text);
         }
 
@@ -299,9 +317,15 @@ mod tests {
             amount in select(&["kg", "g", "mg", "t", "lb", "lbm", "lbf", "slug", "oz", "gm", "gr", "N"][..]),
             length in select(&["m", "cm", "mm", "in", "ft"][..]),
             time in select(&["", "s", " s", "-s", "sec"][..]),
+            cross in select(&["", "x"][..]),
+            is_turned in any::<bool>(),
             more in select(&["", " (CAD)", ", as drawn", " about CoM"][..]),
         ) {
-            let unit = format!("{amount}{length}{time}2");
+            // Behind a length, a letter is no mass: the CMG.
+            let is_turned = is_turned && (amount.len() > 1 || amount == "N" && time.starts_with('s'));
+            let (first, second) = if is_turned { (length, amount) } else { (amount, length) };
+            let before_time = if time.starts_with('s') { cross } else { "" };
+            let unit = format!("{first}{cross}{second}{before_time}{time}2");
             prop_assert!(speaks_of_a_unit(&unit), "{}", unit);
             // Beside other words, a time is no unit of inertia.
             let is_sure = time.is_empty() || amount.len() > 1 && !time.contains([' ', '-']);
@@ -366,6 +390,15 @@ mod tests {
             "pound-force inch second squared",
             "gmcm2",
             "Nmm s2",
+            "gxmm2",
+            "kgxmm2",
+            "lbxin2",
+            "kgxmm",
+            "mmNs",
+            "inlbfs",
+            "mN m s2",
+            "daN m s2",
+            "tonf m s2",
             "kg mm?",
         ] {
             assert!(speaks_of_a_unit(unit), "{unit}");
@@ -387,6 +420,16 @@ mod tests {
             "US-2",
             "CGS 3",
             "tin",
+            "tint",
+            "int",
+            "ing",
+            "CMG",
+            "cmg",
+            "CMG 2",
+            "Dan",
+            "DAN",
+            "MN",
+            "X",
             "unit T",
             "GM T",
             "CM-T",
