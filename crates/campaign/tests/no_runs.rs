@@ -1,7 +1,17 @@
 //! Rows of tables that are no runs.
 
 use gyradius_campaign::{ForeignTable, Judgement, Requirement};
+use parquet::{
+    basic::{Repetition, Type as Physical},
+    column::writer::ColumnWriter,
+    data_type::ByteArray,
+    file::{metadata::KeyValue, properties::WriterProperties, writer::SerializedFileWriter},
+    schema::types::Type,
+};
 use proptest::prelude::*;
+use std::{fs::File, path::Path, sync::Arc};
+
+use crate::scratch::scratch;
 
 fn judged(text: &str) -> Result<[u64; 2], String> {
     let requirement: Requirement = "x <= 1 in 60 % at 80 %".parse().unwrap();
@@ -35,6 +45,17 @@ fn summary() -> impl Strategy<Value = String> {
         "5%",
         "95 %",
         "99.7th percentile",
+        "99.73 percentile",
+        "99.73th",
+        "P99.73",
+        "95% CI",
+        "Mean (n=50)",
+        "Average (50 runs)",
+        "Mean over runs",
+        "Ave.",
+        "STDEV.S",
+        "Stdabw",
+        "µ+3σ",
     ]);
     (word, any::<bool>()).prop_map(
         |(word, quoted)| {
@@ -80,18 +101,18 @@ proptest! {
         prop_assert!(refused.starts_with(&said), "{}{}", text, refused);
     }
 
-    /// Of numbered runs each has a number: a row without one was a run, and all runs had the numbers of their rows. Where none has a whole
-    /// number, they are names.
+    /// Of numbered runs each has a whole number: a row without one, as an average of numbers has none, was a run, and all runs had the numbers of
+    /// their rows. Where none has a whole number, they are names.
     #[test]
     fn a_row_without_a_number_is_no_run_among_numbered_ones(
-        runs in prop::collection::vec(prop::sample::select(vec!["7", "8", "", "NA", "nominal", "r1", "0.5", "-1"]), 2..12),
+        runs in prop::collection::vec(prop::sample::select(vec!["7", "8.0", "", "NA", "nominal", "r1", "424.5", "-1"]), 2..12),
         beside in any::<bool>(),
     ) {
         let row = |(at, run): (usize, &&str)| if beside { format!("{at},{run},0\n") } else { format!("{run},0\n") };
         let head = if beside { "id,run,x\n" } else { "run,x\n" };
         let text = format!("{head}{}", runs.iter().enumerate().map(row).collect::<String>());
-        let is_numbered = runs.iter().any(|run| ["7", "8"].contains(run));
-        let without = runs.iter().position(|run| ["", "NA", "nominal", "r1"].contains(run));
+        let is_numbered = runs.iter().any(|run| ["7", "8.0"].contains(run));
+        let without = runs.iter().position(|run| !["7", "8.0", "-1"].contains(run));
         match (without, judged(&text)) {
             (Some(at), Err(refused)) if is_numbered => {
                 let said = format!("it: line {}, column \"run\": {:?} is not the number of a run", at + 2, runs[at]);
@@ -103,4 +124,99 @@ proptest! {
             }
         }
     }
+
+    /// A row of units has no number, though `-` may stand for one that is missing, and `1` for a unit: it stands above numbers, and a run that failed
+    /// has a name among names, or a number.
+    #[test]
+    fn a_row_of_units_is_no_run(
+        runs in prop::collection::vec((-3..3_i32, any::<bool>()), 1..20),
+        (unit, none) in prop::sample::select(vec![("s", "-"), ("[s]", "1"), ("time (s)", ""), ("deg", "NA")]),
+        names in prop::sample::select(vec!["", "case "]),
+    ) {
+        let x = |(x, failed): (i32, bool)| if failed { "NA".to_owned() } else { x.to_string() };
+        let rows: String = runs.iter().enumerate().map(|(at, run)| format!("{names}{at},,{}\n", x(*run))).collect();
+        let failures = runs.iter().filter(|(x, failed)| *failed || *x > 1).count() as u64;
+        prop_assert_eq!(judged(&format!("t,note,x\n{rows}")), Ok([runs.len() as u64, failures]));
+        let text = format!("t,note,x\n{unit},,{none}\n{rows}");
+        match judged(&text) {
+            Err(refused) if names.is_empty() => {
+                let said = format!("it: line 2, column \"t\": {unit:?} stands above numbers");
+                prop_assert!(refused.starts_with(&said), "{}", refused);
+            }
+            found => {
+                let failed = u64::from(none != "1");
+                prop_assert_eq!(found, Ok([runs.len() as u64 + 1, failures + failed]), "{}", text);
+            }
+        }
+    }
+}
+
+/// Pandas writes the names of the rows behind all other columns, and says so beside the table. Without that, the first column of texts has the names,
+/// and without a column `run` only: texts beside numbers of runs may say anything.
+#[test]
+fn names_of_rows_are_found_in_parquet() {
+    let scratch = scratch();
+    let path = scratch.path().join("it.parquet");
+    for word in ["mean", "99.73 percentile", "case 3"] {
+        let cells = ["case 0", "case 1", word];
+        for (index, others) in [
+            ("__index_level_0__", &["x"][..]),
+            ("case", &["x", "corner"]),
+            ("case", &["x", "run"]),
+            ("", &["x"]),
+            ("", &["x", "run"]),
+        ] {
+            let names = if index.is_empty() { "note" } else { index };
+            write_parquet(&path, others, (names, &cells), index);
+            let requirement: Requirement = "x <= 1 in 60 % at 80 %".parse().unwrap();
+            let found = Judgement::of_table(&[requirement], &ForeignTable::open(&path).unwrap());
+            let may_be_anything = index.is_empty() && others.contains(&"run");
+            if word == "case 3" || may_be_anything {
+                assert_eq!(found.unwrap()[0].runs(), 3, "{index} {others:?}");
+            } else {
+                let said = format!("row 3, column {names:?}: the row says {word:?}");
+                let refused = found.unwrap_err().to_string();
+                assert!(refused.contains(&said), "{refused}");
+            }
+        }
+    }
+}
+
+/// Columns of the numbers 0, 1, 2, but for `corner`, which is of texts, and names behind them, which are the index that pandas tells if it is called so.
+fn write_parquet(path: &Path, others: &[&str], (names, cells): (&str, &[&str]), index: &str) {
+    let field = |name: &&str, physical| {
+        let field = Type::primitive_type_builder(name, physical);
+        Arc::new(field.with_repetition(Repetition::REQUIRED).build().unwrap())
+    };
+    let kind = |name: &&str| match *name {
+        "corner" => Physical::BYTE_ARRAY,
+        _ => Physical::DOUBLE,
+    };
+    let mut fields: Vec<_> = others.iter().map(|name| field(name, kind(name))).collect();
+    fields.push(field(&names, Physical::BYTE_ARRAY));
+    let schema = Type::group_type_builder("it").with_fields(fields).build().unwrap();
+    let told = format!("{{\"index_columns\": [{index:?}], \"columns\": []}}");
+    let note = KeyValue::new("pandas".to_owned(), told);
+    let properties = WriterProperties::builder().set_key_value_metadata(Some(vec![note])).build();
+    let file = File::create(path).unwrap();
+    let mut writer = SerializedFileWriter::new(file, schema.into(), properties.into()).unwrap();
+    let mut group = writer.next_row_group().unwrap();
+    while let Some(mut column) = group.next_column().unwrap() {
+        match column.untyped() {
+            ColumnWriter::DoubleColumnWriter(w) => {
+                w.write_batch(&[0.0, 1.0, 2.0], None, None).unwrap()
+            }
+            ColumnWriter::ByteArrayColumnWriter(w) => {
+                let is_corner = w.get_descriptor().name() == "corner";
+                let cells = if is_corner { &["hot", "cold", "hot"] } else { cells };
+                let cells: Vec<ByteArray> =
+                    cells.iter().map(|cell| ByteArray::from(*cell)).collect();
+                w.write_batch(&cells, None, None).unwrap()
+            }
+            _ => panic!("no test writes this"),
+        };
+        column.close().unwrap();
+    }
+    group.close().unwrap();
+    writer.close().unwrap();
 }

@@ -1,30 +1,45 @@
 //! Names of rows of a table that sum up others, and are none of their kind: a total, an average, a percentile.
 
+use std::cmp::Ordering;
+
 /// Words that speak of a sum.
-const SUMS: [&str; 14] = [
+const SUMS: [&str; 17] = [
     "total",
     "totals",
+    "tot",
     "subtotal",
     "subtotals",
+    "subtot",
     "sum",
     "sums",
     "gesamt",
     "gesamtmasse",
+    "insgesamt",
     "summe",
     "totale",
     "somme",
     "suma",
     "totaal",
-    "zwischensumme",
+    "totaux",
 ];
 
+/// Whether a word speaks of a sum. In German any word may go before it: `Zwischensumme`, `Gesamtsumme`.
+fn is_of_sum(word: &str) -> bool {
+    SUMS.contains(&word) || word.ends_with("summe")
+}
+
 /// Words that speak of another number of all rows.
-const STATISTICS: [&str; 50] = [
+const STATISTICS: [&str; 63] = [
     "σ",
     "sigma",
+    // The sign for a millionth, and the Greek letter.
+    "µ",
+    "μ",
     "average",
     "averages",
     "avg",
+    "ave",
+    "aver",
     "mean",
     "median",
     "stdev",
@@ -32,8 +47,12 @@ const STATISTICS: [&str; 50] = [
     "std",
     "sd",
     "variance",
+    "var",
     "rms",
     "rmse",
+    "rss",
+    "rsd",
+    "iqr",
     "range",
     "minimum",
     "maximum",
@@ -47,7 +66,9 @@ const STATISTICS: [&str; 50] = [
     "quartile",
     "quartiles",
     "skewness",
+    "skew",
     "kurtosis",
+    "kurt",
     "confidence",
     "moyenne",
     "médiane",
@@ -57,9 +78,12 @@ const STATISTICS: [&str; 50] = [
     "étendue",
     "etendue",
     "mittelwert",
+    "mittelw",
     "mittel",
     "durchschnitt",
     "standardabweichung",
+    "standardabw",
+    "stdabw",
     "stabw",
     "varianz",
     "spannweite",
@@ -73,10 +97,12 @@ const STATISTICS: [&str; 50] = [
 ];
 
 /// What stands beside it: of a part that is called otherwise, a name has other words.
-const BESIDE: [&str; 40] = [
+const BESIDE: [&str; 57] = [
     "grand",
     "sub",
     "of",
+    "over",
+    "across",
     "all",
     "the",
     "mass",
@@ -93,6 +119,7 @@ const BESIDE: [&str; 40] = [
     "sample",
     "runs",
     "rows",
+    "n",
     "above",
     "standard",
     "dev",
@@ -101,11 +128,24 @@ const BESIDE: [&str; 40] = [
     "kg",
     "overall",
     "absolute",
+    "abs",
+    "arithmetic",
+    "geometric",
+    "root",
+    "square",
+    "plus",
+    "minus",
+    "mu",
     "type",
     "level",
     "interval",
+    "ci",
+    "bound",
+    "limit",
     "lower",
     "upper",
+    "low",
+    "high",
     "population",
     "estándar",
     "estandar",
@@ -114,17 +154,41 @@ const BESIDE: [&str; 40] = [
     "nd",
     "rd",
     "percent",
+    "pct",
 ];
 
-/// What a number may stand before.
-const COUNTED: [&str; 10] = ["σ", "sigma", "sd", "std", "%", "percent", "th", "st", "nd", "rd"];
+/// What a number may stand before that is no share, besides [`ORDINALS`].
+const COUNTED: [&str; 13] = [
+    "σ",
+    "sigma",
+    "sd",
+    "std",
+    "percentile",
+    "percentiles",
+    "quantile",
+    "quartile",
+    "runs",
+    "samples",
+    "rows",
+    "parts",
+    "bodies",
+];
 
 /// What a number may stand behind.
-const COUNTING: [&str; 4] = ["percentile", "quantile", "quartile", "confidence"];
+const COUNTING: [&str; 5] = ["percentile", "quantile", "quartile", "confidence", "n"];
+
+/// What a number stands before that is a share, and one that may be a percentile.
+const SHARES: [&str; 3] = ["%", "percent", "pct"];
+const ORDINALS: [&str; 4] = ["th", "st", "nd", "rd"];
+
+/// How spreadsheets end the names of these functions, as in `STDEV.S`.
+const ENDS: [&str; 4] = ["s", "p", "inc", "exc"];
+const FUNCTIONS: [&str; 5] = ["stdev", "stddev", "var", "percentile", "quartile"];
 
 /// Tells among the names in a column, from the first row on, those of rows that sum up others.
 ///
-/// A share alone, such as `95%`, is one of them where the first name of the column is no share: a column of shares says something else.
+/// A share without a word of a statistic, such as `95%` or `P99.73`, is one of them where the first name of the column is no share: a column of
+/// shares says something else.
 ///
 /// ```
 /// use gyradius_statistics::SummaryNames;
@@ -171,13 +235,29 @@ impl Kind {
         }
         let plain = name.to_lowercase().replace('∑', "σ");
         let words = words(&plain);
-        let is_key = |word: &str| SUMS.contains(&word) || STATISTICS.contains(&word);
+        let is_key = |word: &str| is_of_sum(word) || STATISTICS.contains(&word);
+        let is_share = |at: &usize| {
+            let (number, next) = (words[*at], words.get(at + 1));
+            let is_of = |some: &[&str]| next.is_some_and(|next| some.contains(next));
+            // The first, second and third are counted more often than percentiles, and so are P1 to P99.
+            let is_ordinal = is_of(&ORDINALS) && number.len() > 1;
+            let is_percentile = *at > 0 && words[at - 1] == "p" && number.contains(['.', ',']);
+            is_number(number) && (is_of(&SHARES) || is_ordinal || is_percentile)
+        };
+        let shares: Vec<usize> = (0..words.len()).filter(is_share).collect();
         let is_plain = |(at, word): (usize, &&str)| {
-            let next = words.get(at + 1).is_some_and(|next| COUNTED.contains(next));
+            let is_counter = |word: &&str| COUNTED.contains(word) || ORDINALS.contains(word);
+            let next = words.get(at + 1).is_some_and(is_counter);
             let before = at.checked_sub(1).and_then(|at| words.get(at));
             let is_counted = next || before.is_some_and(|before| COUNTING.contains(before));
-            let is_share = *word == "%" && before.is_some_and(|before| is_number(before));
-            is_key(word) || BESIDE.contains(word) || is_share || is_number(word) && is_counted
+            let is_end = before.is_some_and(|w| FUNCTIONS.contains(w)) && ENDS.contains(word);
+            let is_of = |share: &usize| match at.cmp(share) {
+                Ordering::Less => at + 1 == *share && *word == "p",
+                Ordering::Equal => true,
+                Ordering::Greater => at == share + 1 && *word == "%",
+            };
+            let is_plain = is_key(word) || BESIDE.contains(word) || is_end;
+            is_plain || is_number(word) && is_counted || shares.iter().any(is_of)
         };
         if !words.iter().enumerate().all(is_plain) {
             return Self::Other;
@@ -187,7 +267,7 @@ impl Kind {
         if deviation || words.iter().any(|word| is_key(word)) {
             return Self::Summary;
         }
-        if matches!(words.as_slice(), [_, "%"]) { Self::Share } else { Self::Other }
+        if shares.is_empty() { Self::Other } else { Self::Share }
     }
 }
 
@@ -222,11 +302,15 @@ fn is_number(word: &str) -> bool {
 /// it may be that of a part all the same, `total pressure sensor`; one, where it can be nothing else: `Bus subtotal`, `Sum of a`.
 #[must_use]
 pub fn least_summed(name: &str) -> Option<usize> {
-    const OTHERS: [&str; 4] = ["average", "mean", "mass", "masse"];
     const OF: [&str; 4] = ["of", "for", "von", "de"];
+    // The mass of a whole: a mass alone may be that of a part, as a balance mass.
+    const MASSES: [&str; 2] = ["mass", "masse"];
+    const WHOLE: [&str; 5] = ["dry", "wet", "launch", "gross", "liftoff"];
     let lower = name.to_lowercase();
     let words = words(&lower);
-    if !words.iter().any(|word| SUMS.contains(word) || OTHERS.contains(word)) {
+    let has = |some: &[&str]| words.iter().any(|word| some.contains(word));
+    let is_whole_mass = has(&MASSES) && has(&WHOLE);
+    if !is_whole_mass && !words.iter().any(|word| is_of_sum(word)) {
         return None;
     }
     // `Total dry mass of the bus`, `Bus total mass (kg)`.
@@ -234,8 +318,8 @@ pub fn least_summed(name: &str) -> Option<usize> {
         words.into_iter().filter(|word| OF.contains(word) || !BESIDE.contains(word)).collect();
     let is_sum = |(at, word): (usize, &&str)| {
         let next = told.get(at + 1);
-        let is_whole = word.starts_with("subtotal");
-        SUMS.contains(word) && (is_whole || next.is_none_or(|next| OF.contains(next)))
+        let is_whole = word.starts_with("subtot") || word.ends_with("summe") && *word != "summe";
+        is_of_sum(word) && (is_whole || next.is_none_or(|next| OF.contains(next)))
     };
     Some(if told.iter().enumerate().any(is_sum) { 1 } else { 2 })
 }
@@ -283,6 +367,9 @@ mod tests {
             "Sample Variance",
             "Confidence Level(95.0%)",
             "total of all parts",
+            "Gesamtsumme",
+            "Tot.",
+            "Insgesamt",
             "Mean value",
             "Max",
             "TOTAL DRY MASS",
@@ -293,10 +380,35 @@ mod tests {
             "percentile 95",
             "Écart-type",
             "1st quartile",
+            "99.73 percentile",
+            "Mean (n=50)",
+            "Average (50 runs)",
+            "Mean over all runs",
+            "Ave.",
+            "STDEV.S",
+            "stdev_p",
+            "Stdabw",
+            "RSS",
+            "µ+3σ",
+            "μ - 3σ",
+            "95% CI of the mean",
         ] {
             assert_eq!(Kind::of(name), Kind::Summary, "{name}");
         }
-        for name in ["5%", "95 %", "99,7%", ".5%"] {
+        for name in [
+            "5%",
+            "95 %",
+            "99,7%",
+            ".5%",
+            "95 pct",
+            "99.73th",
+            "99.7th",
+            "P99.73",
+            "p 0.135",
+            "95% CI",
+            "Lower 95%",
+            "95 percent of runs",
+        ] {
             assert_eq!(Kind::of(name), Kind::Share, "{name}");
         }
         for name in [
@@ -322,6 +434,13 @@ mod tests {
             "sigma 2",
             "P95",
             "5% fill",
+            "1st",
+            "P1.5 antenna",
+            "p",
+            "s",
+            "50 runs",
+            "max s",
+            "upper limit",
         ] {
             assert_eq!(Kind::of(name), Kind::Other, "{name}");
         }
@@ -352,19 +471,29 @@ mod tests {
                 format!("total dry mass of the {part}"),
                 format!("{part}: sum"),
                 format!("Summe von {part}"),
+                format!("Zwischensumme {part}"),
+                format!("{part} insgesamt"),
+                format!("Subtot {part}"),
             ] {
                 assert_eq!(least_summed(&name), Some(1), "{name}");
             }
             for name in [
                 format!("total pressure sensor of {part}"),
                 format!("sum amplifier, {part}"),
-                format!("mean 3 antenna {part}"),
-                format!("{part} mass"),
                 format!("Total {part}"),
+                format!("{part} launch mass"),
+                format!("dry mass of {part}"),
             ] {
                 assert_eq!(least_summed(&name), Some(2), "{name}");
             }
-            assert_eq!(least_summed(part), None, "{part}");
+            for name in [
+                part.to_owned(),
+                format!("mean 3 antenna {part}"),
+                format!("{part} mass"),
+                format!("balance mass {part}"),
+            ] {
+                assert_eq!(least_summed(&name), None, "{name}");
+            }
         }
     }
 }

@@ -1,8 +1,9 @@
-//! Rows of a table that are no runs: those that sum up others, and those without a number among numbered runs.
+//! Rows of a table that are no runs: those that sum up others, those without a number among numbered runs, and rows of units.
 
 use gyradius_statistics::SummaryNames;
 use parquet::{basic::Type as Physical, errors::ParquetError, file::reader::FileReader};
 use std::{
+    io::Read,
     ops::ControlFlow,
     path::{Path, PathBuf},
 };
@@ -11,7 +12,9 @@ use super::{
     ForeignError, ForeignTable, Form,
     models::Models,
     of_csv::{CsvText, reader},
-    of_parquet::{Whole, names, numbers, open, texts, unread, unread_codec},
+    of_parquet::{
+        Whole, first_text, index_of_pandas, names, numbers, open, texts, unread, unread_codec,
+    },
     place_of,
     written::number,
 };
@@ -40,13 +43,18 @@ enum NoRun {
          left out of the table, and the column must have another name if it says something else"
     )]
     NoNumber { cell: String },
+    #[error(
+        "{cell:?} stands above numbers, and no cell of its row is a number: a row of units or of more names is no run and must be left out of the \
+         table, and a run must have a number there, as the others have"
+    )]
+    Units { cell: String },
 }
 
 /// What the cells are that tell a row which is no run.
 #[derive(Debug, Default)]
 struct Cells {
     names: SummaryNames,
-    /// Whether one is the number of a run, and the first that is no number at all.
+    /// Whether one is the number of a run, and the first that is none.
     is_numbered: bool,
     without: Option<(PathBuf, String, String)>,
 }
@@ -61,17 +69,24 @@ struct Looked {
 }
 
 impl Looked {
-    /// The columns that tell: `run`, and the first one, of which models have any names beside `run`.
-    fn of(columns: &[String]) -> Vec<Self> {
+    /// The columns that tell: `run`, the first one, of which models have any names beside `run`, the index of pandas, and, without a column `run`,
+    /// the first one of texts.
+    fn of(columns: &[String], index: &[String], first_text: Option<usize>) -> Vec<Self> {
         let [_, run, _] = Column::first();
         let run = place_of(columns, &run);
-        let first = (!columns.is_empty() && run != Some(0)).then_some(0);
+        let first = (!columns.is_empty()).then_some(0);
         let first = first.filter(|place| run.is_none() || Models::place(columns) != Some(*place));
+        let first_text = first_text.filter(|_| run.is_none());
+        let index = columns.iter().enumerate().filter(|(_, name)| index.contains(name));
+        let mut places: Vec<usize> =
+            run.into_iter().chain(first).chain(first_text).chain(index.map(|(at, _)| at)).collect();
+        places.sort_unstable();
+        places.dedup();
         let looked = |place: usize| {
             let (name, cells) = (columns[place].clone(), Cells::default());
             Self { place, name, is_run: run == Some(place), cells }
         };
-        run.into_iter().chain(first).map(looked).collect()
+        places.into_iter().map(looked).collect()
     }
 
     /// The next cell, as it is written, and where it is; ends with why its row is no run.
@@ -89,12 +104,13 @@ impl Looked {
 
     /// The same of a cell that says nothing but a number, if there is one.
     fn add_number(&mut self, path: &Path, at: impl Fn() -> String, run: Option<f64>, cell: &str) {
-        match run {
-            Some(run) => self.cells.is_numbered |= Column::run_named(run).is_some(),
-            None if self.is_run && self.cells.without.is_none() => {
-                self.cells.without = Some((path.to_owned(), at(), cell.to_owned()));
-            }
-            None => {}
+        if !self.is_run {
+            return;
+        }
+        self.cells.is_numbered |= run.is_some_and(|run| Column::run_named(run).is_some());
+        // An average of numbers has a fraction, most often.
+        if self.cells.without.is_none() && run.is_none_or(|run| run.fract() != 0.0) {
+            self.cells.without = Some((path.to_owned(), at(), cell.to_owned()));
         }
     }
 
@@ -107,8 +123,8 @@ impl Looked {
 }
 
 impl ForeignTable {
-    /// The first row that is no run: that sums up others, as its first cell or the one in the column `run` says, or has no number of a run where
-    /// others have one. The tables of a study have none.
+    /// The first row that is no run: that sums up others, as a cell with its name says, has no number of a run where others have one, or has units. The
+    /// tables of a study have none.
     ///
     /// # Errors
     /// A file cannot be read.
@@ -116,7 +132,8 @@ impl ForeignTable {
         if self.origin.is_some() {
             return Ok(None);
         }
-        let mut looked = Looked::of(&self.columns);
+        let (index, first_text) = self.labels()?;
+        let mut looked = Looked::of(&self.columns, &index, first_text);
         for path in &self.files {
             let found = match &self.form {
                 Form::Parquet => look_parquet(path, &mut looked)?,
@@ -130,6 +147,63 @@ impl ForeignTable {
         }
         Ok(looked.into_iter().find_map(Looked::end))
     }
+
+    /// The columns that pandas calls the index, and the first column of texts.
+    fn labels(&self) -> Result<(Vec<String>, Option<usize>), ForeignError> {
+        match (&self.form, self.files.first()) {
+            (Form::Parquet, Some(path)) => {
+                let file = open(path).map_err(|error| unread(path, &error))?;
+                Ok((index_of_pandas(&file), first_text(&file)))
+            }
+            (Form::Csv { separator, text }, Some(path)) => {
+                let mut reader = reader(path, text, (*separator, self.columns.len()))?;
+                let mut row = csv::StringRecord::new();
+                let is_read = matches!(reader.read_record(&mut row), Ok(true));
+                let is_text = |cell: &str| number(cell).is_none();
+                Ok((Vec::new(), row.iter().position(is_text).filter(|_| is_read)))
+            }
+            (_, None) => Ok((Vec::new(), None)),
+        }
+    }
+}
+
+/// The texts of the first row of a table, of which no cell is a number, where all cells below them are numbers.
+#[derive(Debug, Default)]
+struct AboveNumbers {
+    at: String,
+    /// Place and text, and whether a number stands below.
+    texts: Vec<(usize, String, bool)>,
+}
+
+impl AboveNumbers {
+    /// Of the first row. A unit may be 1.
+    fn of(row: &csv::StringRecord, at: String) -> Self {
+        let is_number = |cell: &str| cell != "1" && number(cell).flatten().is_some();
+        if row.iter().any(is_number) {
+            return Self::default();
+        }
+        let texts = row.iter().enumerate().filter(|(_, cell)| number(cell).is_none());
+        Self { at, texts: texts.map(|(place, cell)| (place, cell.to_owned(), false)).collect() }
+    }
+
+    fn add(&mut self, row: &csv::StringRecord) {
+        self.texts.retain_mut(|(place, _, has_number)| {
+            let cell = number(row.get(*place).unwrap_or_default());
+            *has_number |= cell.flatten().is_some();
+            cell.is_some()
+        });
+    }
+
+    fn end(self, path: &Path, reader: &mut csv::Reader<impl Read>) -> Option<NoRunError> {
+        let (place, cell, _) = self.texts.into_iter().find(|(_, _, has_number)| *has_number)?;
+        let column = reader.headers().ok()?.get(place).unwrap_or_default().to_owned();
+        Some(NoRunError {
+            path: path.to_owned(),
+            at: self.at,
+            column,
+            problem: NoRun::Units { cell },
+        })
+    }
 }
 
 fn look_csv(
@@ -140,6 +214,7 @@ fn look_csv(
 ) -> Result<ControlFlow<NoRunError>, ForeignError> {
     let mut reader = reader(path, text, form)?;
     let mut row = csv::StringRecord::new();
+    let mut above: Option<AboveNumbers> = None;
     // What cannot be read is told of where the numbers are.
     while matches!(reader.read_record(&mut row), Ok(true)) {
         let at = || format!("line {}", row.position().map_or(0, csv::Position::line));
@@ -150,8 +225,13 @@ fn look_csv(
                 return Ok(found);
             }
         }
+        match &mut above {
+            Some(above) => above.add(&row),
+            None => above = Some(AboveNumbers::of(&row, at())),
+        }
     }
-    Ok(ControlFlow::Continue(()))
+    let found = above.and_then(|above| above.end(path, &mut reader));
+    Ok(found.map_or(ControlFlow::Continue(()), ControlFlow::Break))
 }
 
 fn look_parquet(
@@ -197,7 +277,9 @@ fn look_parquet(
             } else if one.is_run && column.physical_type() != Physical::INT96 {
                 let runs = numbers(cells, rows, whole).map_err(failed)?;
                 for (row, run) in runs.into_iter().enumerate() {
-                    one.add_number(path, || at(row), run.filter(|run| !run.is_nan()), "");
+                    let run = run.filter(|run| !run.is_nan());
+                    let cell = run.map_or_else(String::new, |run| run.to_string());
+                    one.add_number(path, || at(row), run, &cell);
                 }
             }
         }

@@ -6,7 +6,7 @@ use parquet::{
     data_type::ByteArray,
     errors::ParquetError,
     file::reader::{FileReader, SerializedFileReader},
-    schema::types::ColumnDescriptor,
+    schema::types::{ColumnDescPtr, ColumnDescriptor},
 };
 use std::{collections::HashMap, fs::File, path::Path};
 
@@ -147,15 +147,35 @@ pub(super) fn scan_parquet(
     Ok(())
 }
 
+/// What pandas says of a table beside it, if it wrote the file.
+fn notes_of_pandas(reader: &SerializedFileReader<File>) -> impl Iterator<Item = serde_json::Value> {
+    let notes = reader.metadata().file_metadata().key_value_metadata();
+    let of_pandas = notes.into_iter().flatten().filter(|note| note.key == "pandas");
+    of_pandas.filter_map(|note| serde_json::from_str(note.value.as_ref()?).ok())
+}
+
+/// The columns of the index, which has the names of the rows and stands behind all others.
+pub(super) fn index_of_pandas(reader: &SerializedFileReader<File>) -> Vec<String> {
+    let columns = notes_of_pandas(reader)
+        .flat_map(|told| told["index_columns"].as_array().cloned().unwrap_or_default());
+    columns.filter_map(|column| column.as_str().map(str::to_owned)).collect()
+}
+
+/// The first column of texts.
+pub(super) fn first_text(reader: &SerializedFileReader<File>) -> Option<usize> {
+    let schema = reader.metadata().file_metadata().schema_descr();
+    let is_text = |column: &ColumnDescPtr| {
+        let texts = [Physical::BYTE_ARRAY, Physical::FIXED_LEN_BYTE_ARRAY];
+        texts.contains(&column.physical_type()) && column.max_rep_level() == 0
+    };
+    schema.columns().iter().position(is_text)
+}
+
 /// The columns of durations with their types. Parquet has none: what writes them with pandas says so beside the table, and in it are whole
 /// numbers of some unit.
 fn durations(reader: &SerializedFileReader<File>) -> HashMap<String, String> {
-    let notes = reader.metadata().file_metadata().key_value_metadata();
-    let of_pandas = notes.into_iter().flatten().filter(|note| note.key == "pandas");
-    let texts = of_pandas.filter_map(|note| serde_json::from_str(note.value.as_ref()?).ok());
-    let columns = texts.flat_map(|told: serde_json::Value| {
-        told["columns"].as_array().cloned().unwrap_or_default()
-    });
+    let columns = notes_of_pandas(reader)
+        .flat_map(|told| told["columns"].as_array().cloned().unwrap_or_default());
     let type_of = |column: serde_json::Value| {
         let [name, kind] =
             ["name", "numpy_type"].map(|key| column[key].as_str().map(str::to_owned));

@@ -22,7 +22,8 @@ impl Judgement {
     ///
     /// # Errors
     /// The table cannot be read, has no such column, has no or too many rows, has the same run twice by its columns `model` and `run`, has a
-    /// row that sums up others or, in the column `run`, one without a number beside others with whole numbers, or holds the rows of some runs only, as the folder of the campaign says that it is in.
+    /// row that sums up others, one of units, or, in the column `run`, one without a number or with a fraction beside others with whole numbers, or holds the
+    /// rows of some runs only, as the folder of the campaign says that it is in.
     pub fn of_table(
         requirements: &[Requirement],
         table: &ForeignTable,
