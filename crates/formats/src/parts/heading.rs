@@ -2,7 +2,7 @@
 
 use gyradius_inertia::Shape;
 
-use super::unread::Unread;
+use super::unread_kinds::Unread;
 use crate::{
     body::entry_of,
     heading_sign::without_sign,

@@ -7,10 +7,11 @@ mod row;
 mod row_shape;
 mod totals;
 mod unread;
+mod unread_kinds;
 
 pub use error::{PartsError, PartsFile, PartsProblem};
 pub use row::{PartNumbers, PartRow};
-pub(crate) use unread::Unread;
+pub(crate) use unread_kinds::Unread;
 
 use std::collections::BTreeMap;
 
@@ -403,13 +404,13 @@ fn with_units(headings: &[String], below: &[String]) -> Result<Option<Vec<String
     let mut together = headings.to_vec();
     for (heading, unit) in together.iter_mut().zip(below) {
         let column = Heading::of(heading);
+        let unit = unit.trim_start_matches(['[', '(']).trim_end_matches([']', ')']);
         if !column.is_number() || unit.is_empty() || unit == "-" {
             continue;
         }
         if unit.parse::<f64>().is_ok() {
             return Ok(None);
         }
-        let unit = unit.trim_start_matches(['[', '(']).trim_end_matches([']', ')']);
         let Some((dimension, stated)) = column.dimension() else {
             let is_percent = column.is_percent();
             if !is_percent || !["%", "percent"].contains(&unit) {

@@ -6,7 +6,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use super::error::{PartsError, PartsFile, PartsProblem};
 use super::heading::{self, Column, GYRATION, Group, Heading, Scale, VALUES};
 use super::last_place::half_of_last_place;
-use super::unread::Unread;
+use super::unread_kinds::Unread;
 use crate::{
     FileBodyError, Products,
     body::{Number, shortened},
