@@ -4,7 +4,7 @@ use crate::units::squeezed;
 
 /// What is written of standard deviations, wherever it stands, and in words of their own.
 const MARKS: [&str; 5] = ["sigma", "percent", "%", "σ", "±"];
-const WORDS: [&str; 61] = [
+const WORDS: [&str; 63] = [
     "sd",
     "std",
     "stdev",
@@ -52,6 +52,8 @@ const WORDS: [&str; 61] = [
     "upper",
     "low",
     "high",
+    "lo",
+    "hi",
     "95",
     "99",
     "p5",
@@ -75,10 +77,14 @@ pub(crate) fn is_marked(heading: &str) -> bool {
     MARKS.iter().any(|mark| plain.contains(mark))
 }
 
-/// Whether it has the mark as it is typed: `mass +/-`.
+/// Whether it has the mark as it is typed, `mass +/-`, or a coverage factor, `mass (k=2)`.
 pub(crate) fn has_typed_mark(heading: &str) -> bool {
     let plain: String = heading.chars().filter(|c| !c.is_whitespace()).collect();
-    plain.contains("+/-") || plain.contains("+-")
+    let is_factor = |(at, _): (usize, &str)| {
+        let (before, after) = (&heading[..at], &heading[at + 1..]);
+        !before.ends_with(char::is_alphanumeric) && after.trim_start().starts_with('=')
+    };
+    plain.contains("+/-") || plain.contains("+-") || heading.match_indices('k').any(is_factor)
 }
 
 /// Whether it has a word for it, or two that are one: `half width`.

@@ -252,11 +252,19 @@ pub(crate) fn is_spread(text: &str) -> bool {
     let (small, parted) = (text.to_lowercase(), spread::parted(text));
     let words: Vec<&str> = spread::words(&parted).collect();
     let is_number = |words: &[&str]| group(&words.concat()).is_some();
-    let names_number = words.chunks(1).any(is_number) || words.windows(2).any(is_number);
+    const INERTIAS: [&str; 7] = ["inertia", "inertias", "moi", "mois", "poi", "pois", "tensor"];
+    let names_number = words.chunks(1).any(is_number)
+        || words.windows(2).any(is_number)
+        || words.iter().any(|word| INERTIAS.contains(word));
     // A letter beside it is no number: `varx` may be anything.
     let is_name = |name: &str| name.len() > 1 && group(name).is_some();
     let is_one_word = || spread::words(&small).flat_map(spread::beside_word).any(is_name);
-    (spread::has_word(text) && names_number) || is_one_word() || is_difference(&small)
+    // Behind it they are limits, and before it, or behind a product, signs.
+    let is_limit = match words.split_last() {
+        Some((&("plus" | "minus"), name)) => group(&name.concat()).is_some_and(|group| group.0 < 7),
+        _ => false,
+    };
+    (spread::has_word(text) && names_number) || is_limit || is_one_word() || is_difference(&small)
 }
 
 /// Whether a heading has the name of a size of a shape, and other words beside it.
@@ -271,11 +279,16 @@ fn names_size(text: &str) -> bool {
 /// `dmass`, `δmass`, `u(mass)`.
 fn is_difference(text: &str) -> bool {
     const MARKS: [&str; 5] = ["delta", "d", "δ", "∆", "u"];
+    // Without these, `m` may be the metre of a unit: `dm`, `um`.
+    const OF_LETTER: [&str; 2] = ["δm", "∆m"];
     let begins = |c: char| c.is_alphabetic() || c == '∆';
     if !MARKS.iter().any(|mark| text.trim_start_matches(|c| !begins(c)).starts_with(mark)) {
         return false;
     }
     let of = |name: &str| {
+        if OF_LETTER.contains(&name) {
+            return Some(Group(0, 1));
+        }
         let rests = MARKS.iter().filter_map(|mark| name.strip_prefix(mark));
         rests.filter_map(group).find(|group| group.1 == 1)
     };
@@ -380,7 +393,9 @@ fn quantity(text: &str) -> Option<Heading> {
         {
             Some(Heading::Product)
         }
-        (Err(bad), Group(first, 1)) if !spread::is_marked(text) && !is_spread(text) => {
+        (Err(bad), Group(first, 1))
+            if !spread::is_marked(text) && !spread::has_typed_mark(text) && !is_spread(text) =>
+        {
             Some(Heading::Unit(VALUES[first], bad))
         }
         (Ok(_) | Err(_), Group(..)) => None,

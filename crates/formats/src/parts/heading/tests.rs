@@ -103,3 +103,41 @@ fn headings_are_known_in_every_spelling() {
         assert!(same, "{text}: {found:?}");
     }
 }
+
+/// Any word for a deviation or a limit beside any name of a number, of three of them or of the inertia as a whole, in any order.
+#[test]
+fn words_of_uncertainty_beside_names_are_deviations() {
+    for name in [
+        "mass",
+        "CG",
+        "Xcg",
+        "Ixx",
+        "I_yz",
+        "inertia",
+        "MOI",
+        "POI",
+        "moments",
+        "moment of inertia",
+        "inertia tensor",
+    ] {
+        for word in
+            ["uncertainty", "unc", "tolerance", "error", "SD", "lo", "hi", "min", "max", "k=2"]
+        {
+            for text in [
+                format!("{name} {word}"),
+                format!("{name}_{word}"),
+                format!("{name} ({word})"),
+                format!("{name} {word} [x]"),
+            ] {
+                assert_eq!(Heading::of(&text), Heading::NoDeviation, "{text}");
+            }
+        }
+    }
+    for text in ["Δm", "δm (kg)", "∆m [lb]", "U(mass) k=2", "mass_plus", "mass minus", "CG plus"]
+    {
+        assert_eq!(Heading::of(text), Heading::NoDeviation, "{text}");
+    }
+    for text in ["dm", "um", "product range", "moment", "book=3", "Hi", "plus"] {
+        assert_ne!(Heading::of(text), Heading::NoDeviation, "{text}");
+    }
+}
