@@ -15,6 +15,9 @@ use crate::{
 pub(crate) const VALUES: [&str; 10] =
     ["mass", "centre_x", "centre_y", "centre_z", "ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
 
+/// The names of the products below the diagonal, in the order of those above it.
+pub(super) const BELOW: [[&str; 2]; 3] = [["iyx", "i21"], ["izx", "i31"], ["izy", "i32"]];
+
 /// The radii of gyration, as messages call them.
 pub(super) const GYRATION: [&str; 3] = ["kx", "ky", "kz"];
 
@@ -58,6 +61,8 @@ pub(crate) enum Column {
     Attitude(usize),
     /// One of the ten, and its unit in SI, if one is stated.
     Value(usize, Option<f64>),
+    /// A product below the diagonal, from 0, and its unit in SI, if one is stated.
+    Below(usize, Option<f64>),
     /// The radius of gyration about an axis, and its unit in SI, if one is stated.
     Gyration(usize, Option<f64>),
     /// The standard deviation of some of the ten.
@@ -105,6 +110,7 @@ impl Column {
     fn unit(&mut self) -> Option<(Dimension, &mut Option<f64>)> {
         match self {
             Self::Value(i, unit) => Some((Group(*i, 1).dimension(), unit)),
+            Self::Below(_, unit) => Some((Dimension::Inertia, unit)),
             Self::Gyration(_, unit) => Some((Dimension::Length, unit)),
             Self::Deviation(group, Scale::Unit(unit)) => Some((group.dimension(), unit)),
             Self::Deviation(_, Scale::Percent)
@@ -193,12 +199,25 @@ impl Heading {
 
     /// Whether it must be a product, and one of the three is not in a column that is read.
     pub(crate) fn is_lost_product(&self, beside: &[Self]) -> bool {
+        *self == Self::Product && !Self::are_products_read(beside)
+    }
+
+    /// Whether the three products above the diagonal are in columns that are read.
+    pub(super) fn are_products_read(columns: &[Self]) -> bool {
         let is_read = |product: usize| {
             let holds =
                 |other: &Self| matches!(other, Self::Column(Column::Value(i, _)) if *i == product);
-            beside.iter().any(holds)
+            columns.iter().any(holds)
         };
-        *self == Self::Product && !(7..10).all(is_read)
+        (7..10).all(is_read)
+    }
+
+    /// What it means beside no products above the diagonal.
+    pub(super) fn without_products(self) -> Self {
+        match self {
+            Self::Column(Column::Below(..)) => Self::Product,
+            other => other,
+        }
     }
 
     pub(crate) fn of(text: &str) -> Self {
@@ -323,6 +342,15 @@ pub(super) fn may_be_name(text: &str) -> bool {
     known.contains(&squeezed(text).as_str())
 }
 
+/// A product below the diagonal, if its unit is read: `Iyx [kg m2]`.
+fn below(text: &str) -> Option<Heading> {
+    let known = |plain: &str| BELOW.iter().position(|names| names.contains(&plain));
+    let (product, tail) = longest_name(text, known)?;
+    let unit = tail.unit(Dimension::Inertia)?.ok()?;
+    let stated = (!unit.text.is_empty()).then_some(unit.si);
+    Some(Heading::Column(Column::Below(product, stated)))
+}
+
 /// A radius of gyration: `kx_m`, `Ky [in]`, `radius of gyration z`.
 fn gyration(text: &str) -> Option<Heading> {
     let axis = |plain: &str| match plain {
@@ -371,8 +399,8 @@ fn known_size(plain: &str) -> Option<&'static str> {
 
 /// A number of the ten or its deviation: `mass_kg`, `sigma_ixx`, `mass_sigma_kg`, `moments_percent`.
 fn quantity(text: &str) -> Option<Heading> {
-    if let Some(mass) = letter(text) {
-        return Some(mass);
+    if let Some(found) = letter(text).or_else(|| below(text)) {
+        return Some(found);
     }
     let ((group, is_deviation), tail) = longest_name(text, number)?;
     if ["percent", "%"].contains(&squeezed(tail.text()).as_str()) {

@@ -4,6 +4,7 @@ mod error;
 pub(crate) mod heading;
 mod last_place;
 mod row;
+mod row_below;
 mod row_shape;
 mod totals;
 mod unread;
@@ -141,6 +142,9 @@ impl PartsTable {
         let mut columns: Vec<Heading> = columns.collect();
         if !columns.contains(&Heading::Column(Column::Shape)) {
             columns = columns.into_iter().map(Heading::without_shapes).collect();
+        }
+        if !Heading::are_products_read(&columns) {
+            columns = columns.into_iter().map(Heading::without_products).collect();
         }
         // Beside names, numbers are no names.
         let is_id = |heading: &String| squeezed(heading) == "id";

@@ -199,6 +199,7 @@ impl Cells<'_> {
                 | Column::Point
                 | Column::Shape
                 | Column::Follows
+                | Column::Below(..)
                 | Column::Gyration(..),
             )
             | Heading::Size(..)
@@ -227,6 +228,7 @@ impl Cells<'_> {
         let says = |heading: &Heading| match heading {
             Heading::Column(
                 Column::Value(..)
+                | Column::Below(..)
                 | Column::Gyration(..)
                 | Column::Deviation(..)
                 | Column::Shape
@@ -273,6 +275,7 @@ impl Cells<'_> {
                 });
             }
         }
+        self.agrees_below(std::array::from_fn(|e| values[7 + e].unwrap_or_default()))?;
         let [mass_kg, x, y, z] = std::array::from_fn(|i| values[i].unwrap_or_default());
         let shape = self.shape()?;
         let radii = self.gyration(mass_kg)?;
