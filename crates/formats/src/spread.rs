@@ -87,6 +87,12 @@ pub(crate) fn has_typed_mark(heading: &str) -> bool {
     plain.contains("+/-") || plain.contains("+-") || heading.match_indices('k').any(is_factor)
 }
 
+/// Whether it speaks of standard deviations by their sign.
+pub(crate) fn has_sigma(heading: &str) -> bool {
+    let plain = squeezed(heading);
+    ["sigma", "σ", "±"].iter().any(|mark| plain.contains(mark))
+}
+
 /// Whether it has a word for it, or two that are one: `half width`.
 pub(crate) fn has_word(heading: &str) -> bool {
     let parted = parted(heading);

@@ -174,6 +174,26 @@ pub enum PartsProblem {
         /// What is allowed.
         allowed: &'static str,
     },
+    /// A column of percentages that are no standard deviations.
+    #[error(
+        "column {heading:?} has the share of each part in the mass of all, which is no standard deviation: the column must be left out, or, if it is \
+         one, be called sigma_mass_percent"
+    )]
+    Shares {
+        /// The heading.
+        heading: String,
+    },
+    /// A row with numbers below another one with numbers, to which it belongs.
+    #[error(
+        "column {heading:?} says that the row belongs to {above:?}, and both have numbers, which rollup would count twice: an assembly must \
+         have none, or, if the column says something else, it must have another heading"
+    )]
+    Level {
+        /// The heading.
+        heading: String,
+        /// The name of the row that it belongs to.
+        above: String,
+    },
     /// A row that sums up others.
     #[error(
         "the name is that of a row which sums up others, and rollup would count it as a part: it must be left out, or \

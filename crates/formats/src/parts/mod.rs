@@ -1,11 +1,14 @@
 //! Lists of parts: mass, mass centre, inertia and their standard deviations, one part a row, and what belongs to what.
 
+mod edges;
 mod error;
 pub(crate) mod heading;
 mod last_place;
+mod levels;
 mod row;
 mod row_below;
 mod row_shape;
+mod shares;
 mod totals;
 mod unread;
 mod unread_kinds;
@@ -17,7 +20,7 @@ pub(crate) use unread_kinds::Unread;
 use std::collections::BTreeMap;
 
 use crate::{
-    FileBodyError, FileProblem, MAX_BODIES, Products,
+    FileProblem, MAX_BODIES, Products,
     body::shortened,
     error::Refusal,
     products_comment::stated_products,
@@ -27,8 +30,11 @@ use crate::{
     title_units,
     units::{Unit, squeezed},
 };
+use edges::Edges;
 use heading::{Column, Heading};
+use levels::Levels;
 use row::Cells;
+use shares::Shares;
 
 /// The assembly of a list without assemblies.
 const WHOLE: &str = "whole";
@@ -226,6 +232,15 @@ impl PartsTable {
                 return Err(PartsError::new(*line, None, error.into()));
             }
         }
+        // What else may say that a row is a total.
+        let label = |at: &usize| {
+            let is_first =
+                *at == 0 || is_id(&headings[*at]) || heading::may_be_name(&headings[*at]);
+            is_first && columns[*at] == Heading::Other
+        };
+        let labels: Vec<usize> = (0..columns.len()).filter(label).collect();
+        let mut shares = Shares::of(&columns, &headings);
+        let mut levels = Levels::of(&headings).filter(|_| !has_parents);
         let mut found = Vec::new();
         while let Some(fields) = next(&text, &mut rows)? {
             let line = line_of(&text, &fields);
@@ -241,16 +256,27 @@ impl PartsTable {
                 cells: &cells,
                 stated,
                 products,
+                labels: &labels,
                 terms,
             };
-            found.push(row.row(line).map_err(|error| error.beside(&passed_over))?);
+            let row = row.row(line).map_err(|error| error.beside(&passed_over))?;
+            if let Some(shares) = &mut shares {
+                shares.add(&row, &cells);
+            }
+            if let Some(problem) = levels.as_mut().and_then(|levels| levels.add(&row, &cells)) {
+                return Err(PartsError::new(line, Some(row.name()), problem));
+            }
+            found.push(row);
         }
         if found.is_empty() {
             return Err(PartsError::new(line, None, PartsProblem::NoRows));
         }
-        if let Some(row) = totals::named(&found) {
+        if let Some((row, label)) = totals::named(&found) {
             let (_, line) = row.place();
-            return Err(PartsError::new(line, Some(row.name()), PartsProblem::Summary));
+            return Err(PartsError::new(line, Some(label), PartsProblem::Summary));
+        }
+        if let Some(problem) = shares.and_then(Shares::problem) {
+            return Err(PartsError::new(line, None, problem));
         }
         Ok(Raw { rows: found, passed_over, has_parents })
     }
@@ -266,82 +292,6 @@ struct Raw {
 impl Raw {
     fn finish(self) -> PartsTable {
         PartsTable { rows: self.rows, passed_over: self.passed_over }
-    }
-}
-
-/// A table of what belongs to what.
-struct Edges {
-    /// Line, child and parent of each row.
-    edges: Vec<(usize, String, String)>,
-    passed_over: Vec<String>,
-}
-
-impl Edges {
-    fn of(bytes: &[u8]) -> Result<Self, PartsError> {
-        let text = Text::new(bytes, true)?;
-        let mut rows = Rows::new(text.as_str());
-        let Some(first) = next(&text, &mut rows)? else {
-            return Err(Refusal::from(FileProblem::Empty).into());
-        };
-        let headings: Vec<String> = first.iter().map(|field| cell(&text, field)).collect();
-        let place = |column: &'static str| {
-            let refused = |problem| PartsError::new(line_of(&text, &first), None, problem);
-            let is_it = |(at, heading): (usize, &String)| {
-                (heading.to_lowercase() == column).then_some((at, shortened(heading)))
-            };
-            let mut found = headings.iter().enumerate().filter_map(is_it);
-            match (found.next(), found.next()) {
-                (None, _) => Err(refused(PartsProblem::NoColumn { column })),
-                (Some((_, first)), Some((_, second))) => {
-                    Err(refused(PartsProblem::Columns { first, second }))
-                }
-                (Some((at, _)), None) => Ok(at),
-            }
-        };
-        let places = [("child", place("child")?), ("parent", place("parent")?)];
-        let is_other = |(at, heading): (usize, &String)| {
-            places.iter().all(|(_, place)| *place != at).then(|| shortened(heading))
-        };
-        let passed_over = headings.iter().enumerate().filter_map(is_other).collect();
-        // Masses and the like are not read from here, whatever they say.
-        let column = |heading: &String| Unread::of(heading).map_or(Heading::Other, Heading::Unread);
-        let columns: Vec<Heading> = headings.iter().map(column).collect();
-        let terms = TableTerms::default();
-        let mut edges = Vec::new();
-        let mut lines: BTreeMap<(String, String), usize> = BTreeMap::new();
-        while let Some(fields) = next(&text, &mut rows)? {
-            let line = line_of(&text, &fields);
-            let refused = |problem| PartsError::new(line, None, problem);
-            let (found, allowed) = (fields.len(), headings.len());
-            if found != allowed {
-                let problem = FileBodyError::Count { field: "the row", found, allowed }.into();
-                return Err(refused(problem));
-            }
-            let of = |(field, place): (&'static str, usize)| {
-                let found = fields.get(place).map(|field| cell(&text, field));
-                let missing = || refused(FileBodyError::Missing { field }.into());
-                found.filter(|name| !name.is_empty()).ok_or_else(missing)
-            };
-            let (child, parent) = (of(places[0])?, of(places[1])?);
-            // A child that stands four times, or has a 4 beside it, is meant to be there four times.
-            let cells: Vec<String> = fields.iter().map(|field| written(&text, field)).collect();
-            let row = Cells {
-                columns: &columns,
-                headings: &headings,
-                cells: &cells,
-                stated: None,
-                products: None,
-                terms: &terms,
-            };
-            if let Some(problem) = row.unread().or_else(|| row.not_known(false, false)) {
-                return Err(PartsError::new(line, Some(&child), problem));
-            }
-            if let Some(first) = lines.insert((child.clone(), parent.clone()), line) {
-                return Err(refused(PartsProblem::EdgeTwice { child, parent, first }));
-            }
-            edges.push((line, child, parent));
-        }
-        Ok(Self { edges, passed_over })
     }
 }
 

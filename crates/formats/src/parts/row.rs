@@ -2,6 +2,7 @@
 
 use gyradius_inertia::{InertiaMatrix, Shape};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use std::iter;
 
 use super::error::{PartsError, PartsFile, PartsProblem};
 use super::heading::{self, Column, GYRATION, Group, Heading, Scale, VALUES};
@@ -29,6 +30,8 @@ const UNIT: f64 = 1e-3;
 #[derive(Clone, Debug, PartialEq)]
 pub struct PartRow {
     name: String,
+    /// What else may say that it is a total: `TOTAL` in a column of descriptions.
+    other_labels: Vec<String>,
     parent: Option<String>,
     place: (PartsFile, usize),
     parent_place: (PartsFile, usize),
@@ -37,7 +40,8 @@ pub struct PartRow {
 
 impl PartRow {
     pub(super) fn assembly(name: &str, place: (PartsFile, usize)) -> Self {
-        Self { name: name.to_owned(), parent: None, place, parent_place: place, numbers: None }
+        let (name, other_labels) = (name.to_owned(), Vec::new());
+        Self { name, other_labels, parent: None, place, parent_place: place, numbers: None }
     }
 
     pub(super) fn set_parent(&mut self, parent: &str, place: (PartsFile, usize)) {
@@ -49,6 +53,11 @@ impl PartRow {
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Its name, and what else may say that it is a total.
+    pub(super) fn labels(&self) -> impl Iterator<Item = &str> {
+        iter::once(self.name()).chain(self.other_labels.iter().map(String::as_str))
     }
 
     /// What it belongs to, if anything.
@@ -140,6 +149,8 @@ pub(super) struct Cells<'a> {
     pub(super) stated: Option<Products>,
     /// What they are where the table does not say it.
     pub(super) products: Option<Products>,
+    /// The columns that may say, beside the name, that a row is a total.
+    pub(super) labels: &'a [usize],
     /// What holds for all rows.
     pub(super) terms: &'a TableTerms,
 }
@@ -162,7 +173,9 @@ impl Cells<'_> {
         }
         let numbers = self.numbers().map_err(refused)?;
         let place = (PartsFile::Parts, line);
-        Ok(PartRow { name, parent, place, parent_place: place, numbers })
+        let other_labels = self.labels.iter().filter_map(|at| self.cells.get(*at).cloned());
+        let other_labels = other_labels.collect();
+        Ok(PartRow { name, other_labels, parent, place, parent_place: place, numbers })
     }
 
     /// Cells that are not empty, under the columns of a kind.

@@ -29,7 +29,7 @@ impl Weight {
             centre: numbers.mass_centre_m(),
             mass_off: half.min(MOST_ROUNDED[0] * mass.abs()),
             centre_off: halves.map(|half| half.min(MOST_ROUNDED[1] * size)),
-            speaks_of_a_sum: least_summed(row.name()).is_some(),
+            speaks_of_a_sum: least(row).is_some(),
         }
     }
 }
@@ -71,9 +71,15 @@ impl Sum {
         self.has_sums |= row.speaks_of_a_sum;
     }
 
-    /// Whether a row has the mass of these, to rounding: each is off by an even law.
+    /// How far a sum may be off by all rows, of the squares of how far each may be: each by an even law, so that three standard deviations are the square
+    /// root of three times the sum of squares, and so many numbers are never off by more than the root of so many times that sum.
+    fn off(&self, squares: f64) -> f64 {
+        (squares * self.count.min(3) as f64).sqrt()
+    }
+
+    /// Whether a row has the mass of these, to rounding.
     fn has_mass(&self, row: &Weight) -> bool {
-        let off = row.mass_off + three_sigma(self.mass_squares);
+        let off = row.mass_off + self.off(self.mass_squares);
         row.mass > 0.0 && (self.mass - row.mass).abs() <= off.max(ROUNDED * row.mass)
     }
 
@@ -84,38 +90,49 @@ impl Sum {
             let of_masses = self.second_squares[axis] - 2.0 * x * self.first_squares[axis]
                 + x * x * self.mass_squares;
             let off = self.mass * row.centre_off[axis]
-                + three_sigma(self.centre_squares[axis] + of_masses.max(0.0));
+                + self.off(self.centre_squares[axis] + of_masses.max(0.0));
             let apart = (self.first_moments[axis] - self.mass * x).abs();
             apart <= off.max(ROUNDED * row.mass * size)
         };
         self.has_mass(row) && (0..3).all(is_near)
     }
 
-    /// Whether it weighs more than a row, and will if masses are added to it.
+    /// Whether it weighs more than a row, and will if positive masses are added to it.
     fn is_heavier(&self, row: &Weight) -> bool {
-        let off = row.mass_off + three_sigma(self.mass_squares) + ROUNDED * row.mass;
+        let off = row.mass_off + self.off(self.mass_squares) + ROUNDED * row.mass;
         self.mass - row.mass > off
     }
 }
 
-/// Three standard deviations of a sum of numbers that are off by an even law, of the squares of how far each may be.
-fn three_sigma(squares: f64) -> f64 {
-    (3.0 * squares).sqrt()
+/// How many rows a row must have the sum of to be taken for it, if it speaks of one.
+fn least(row: &PartRow) -> Option<usize> {
+    row.labels().filter_map(least_summed).min()
 }
 
-/// The first row with numbers whose name says that it sums up others, or speaks of a sum and has that of rows above it.
-pub(super) fn named(rows: &[PartRow]) -> Option<&PartRow> {
+/// The first row with numbers that says that it sums up others, or speaks of a sum and has that of the rows just above or below it, and what it says.
+pub(super) fn named(rows: &[PartRow]) -> Option<(&PartRow, &str)> {
     let size = size(rows);
-    let (mut parts, mut only_grow): (Vec<Weight>, bool) = (Vec::new(), true);
-    let mut names = SummaryNames::default();
-    for (row, numbers) in rows.iter().filter_map(|row| Some((row, row.numbers()?))) {
-        let found = Weight::of(row, numbers, size);
-        let is_sum = |least| is_sum(&parts, least, &found, size, only_grow);
-        if names.sums_up(row.name()) || least_summed(row.name()).is_some_and(is_sum) {
-            return Some(row);
+    let with_weight = |row| Some((row, Weight::of(row, row.numbers()?, size)));
+    let all: Vec<(&PartRow, Weight)> = rows.iter().filter_map(with_weight).collect();
+    // A list with a part of no mass or less is refused for that.
+    let are_parts = all.iter().all(|(_, weight)| weight.mass > 0.0);
+    let mut names: Vec<SummaryNames> = Vec::new();
+    for (at, (row, own)) in all.iter().enumerate() {
+        names.resize_with(row.labels().count(), SummaryNames::default);
+        let sums_up =
+            |(label, names): (_, &mut SummaryNames)| names.sums_up(label).then_some(label);
+        if let Some(label) = row.labels().zip(&mut names).find_map(sums_up) {
+            return Some((row, label));
         }
-        only_grow &= found.mass >= 0.0;
-        parts.push(found);
+        let Some(least) = least(row).filter(|_| are_parts) else { continue };
+        let (above, below) = (&all[..at], &all[at + 1..]);
+        let weight = |(_, weight): &(&PartRow, Weight)| *weight;
+        if is_sum(above.iter().rev().map(weight), least, own, size)
+            || is_sum(below.iter().map(weight), least, own, size)
+        {
+            let label = row.labels().find(|label| least_summed(label).is_some());
+            return label.map(|label| (*row, label));
+        }
     }
     None
 }
@@ -138,20 +155,21 @@ pub(super) fn like_totals(rows: &[PartRow]) -> Vec<&PartRow> {
     found
 }
 
-/// Whether it is the sum of so many or more of the last ones. Where a name can be nothing else than that of a sum, the mass of two or more rows is
-/// enough if none of them speaks of a sum: lists of sums alone hold equal masses.
-///
-/// `only_grow` says that no mass is negative: nothing above rows that weigh more already makes the sum less, and lists of 60,000 parts whose
-/// names speak of a mass are not summed up once for each part.
-fn is_sum(parts: &[Weight], least: usize, of: &Weight, size: f64, only_grow: bool) -> bool {
+/// Whether a row is the sum of so many or more of the first of some parts. Where a name can be nothing else than that of a sum, the mass of two or more
+/// rows is enough if none of them speaks of a sum: lists of sums alone hold equal masses. Where it may be that of a part, `total pressure sensor`, the rows
+/// must be other parts.
+fn is_sum(parts: impl Iterator<Item = Weight>, least: usize, of: &Weight, size: f64) -> bool {
     let mut sum = Sum::default();
-    for part in parts.iter().rev() {
-        sum.add(part);
-        if only_grow && sum.is_heavier(of) {
+    for part in parts {
+        sum.add(&part);
+        // Lists of 60,000 parts are not summed up once for each part.
+        if sum.is_heavier(of) {
             return false;
         }
-        let by_mass = least == 1 && sum.count > 1 && !sum.has_sums && sum.has_mass(of);
-        if by_mass || sum.count >= least && sum.is_same(of, size) {
+        let is_certain = least == 1;
+        let by_mass = is_certain && sum.count > 1 && !sum.has_sums && sum.has_mass(of);
+        let may_be_sum = sum.count >= least && (is_certain || !sum.has_sums);
+        if by_mass || may_be_sum && sum.is_same(of, size) {
             return true;
         }
     }
@@ -190,22 +208,64 @@ mod tests {
     }
 
     proptest! {
-        /// That sums of masses that only grow are given up where they are heavier changes no answer: half of these rows are sums.
+        /// That sums are given up where they are heavier changes no answer: half of these rows are sums.
         #[test]
         fn what_is_heavier_is_no_sum(
             parts in parts(1..12),
-            (summed, least, of_some, off) in (1..12_usize, 1..4_usize, any::<bool>(), 0.98..1.02f64),
+            (summed, least, of_some, off) in (1..12_usize, 1..3_usize, any::<bool>(), 0.98..1.02f64),
             (rounding, has_sums) in (prop::array::uniform2(0.0..0.01f64), any::<bool>()),
         ) {
             let weight = |(mass, centre): (f64, [f64; 3])| Weight {
                 mass, centre, mass_off: rounding[0] * mass, centre_off: [rounding[1]; 3], speaks_of_a_sum: has_sums,
             };
-            let last = &parts[parts.len().saturating_sub(summed)..];
-            let (mass, centre) = if of_some { total(last) } else { parts[0] };
+            let (mass, centre) = if of_some { total(&parts[..summed.min(parts.len())]) } else { parts[0] };
             let of = weight((off * mass, centre));
             let parts: Vec<Weight> = parts.iter().map(|part| weight(*part)).collect();
-            let [grows, any] = [true, false].map(|only_grow| is_sum(&parts, least, &of, 1.0, only_grow));
-            prop_assert_eq!(grows, any);
+            let is_one = |count: &usize| {
+                let sum = Sum::of(&parts[..*count]);
+                let by_mass = least == 1 && *count > 1 && !has_sums && sum.has_mass(&of);
+                by_mass || *count >= least && (least == 1 || !has_sums) && sum.is_same(&of, 1.0)
+            };
+            let expected = (1..=parts.len()).any(|count| is_one(&count));
+            prop_assert_eq!(is_sum(parts.iter().copied(), least, &of, 1.0), expected);
+        }
+
+        /// Parts that are called masses, and those of which some may be sums by their digits, are no sums, in whatever digits: whole kilograms on a
+        /// beam, and balance masses opposite to each other.
+        #[test]
+        fn lumped_masses_are_no_sums(
+            masses in prop::collection::vec((1_u32..12, -30_i32..30), 2..40),
+            [of_mass, of_centre] in prop::array::uniform2(0_usize..3),
+            name in prop::sample::select(vec!["Mass", "lumped mass", "ballast mass", "Balance mass", "tip mass", "total pressure sensor", "mean block"]),
+            place in any::<prop::sample::Index>(),
+        ) {
+            let mut parts: Vec<(f64, [f64; 3])> =
+                masses.iter().map(|(mass, x)| (f64::from(*mass), [f64::from(*x) / 10.0, 0.0, 0.0])).collect();
+            // One is exactly the sum of those above it.
+            let place = 1 + place.index(parts.len());
+            parts.insert(place, total(&parts[..place]));
+            let list = parts.iter().enumerate().map(|(i, part)| row(&format!("{name} {i}"), *part, [of_mass, of_centre])).collect::<String>();
+            prop_assert!(read(&format!("{HEAD}{list}")).is_ok(), "{}", list);
+        }
+
+        /// A sum that stands above its parts is one, too.
+        #[test]
+        fn a_sum_may_stand_above_its_parts(
+            (before, of, after) in (parts(0..4), parts(2..6), parts(0..4)),
+            decimals in prop::array::uniform2(2_usize..6),
+            name in prop::sample::select(vec!["Bus total", "Subtotal bus", "Gesamtmasse Bus", "Teilsumme", "Tot. bus", "Launch mass", "Subtot"]),
+        ) {
+            let rows = |parts: &[(f64, [f64; 3])], name: &str| {
+                parts.iter().enumerate().map(|(i, part)| row(&format!("{name} {i}"), *part, decimals)).collect::<String>()
+            };
+            let sum = row(name, total(&of), decimals);
+            let parts = [rows(&before, "a"), rows(&of, "b"), rows(&after, "c")];
+            let plain = read(&format!("{HEAD}{}", parts.concat()));
+            prop_assert!(plain.is_ok(), "{:?}", plain);
+            let [before, of, after] = parts;
+            let refused = read(&format!("{HEAD}{before}{sum}{of}{after}"));
+            let refused = refused.map(|_| ()).map_err(|error| error.to_string()).unwrap_err();
+            prop_assert!(refused.contains("which sums up others"), "{}", refused);
         }
 
         /// A total is one in whatever digits it and its parts are shown, and no part of a list is one.
@@ -259,5 +319,27 @@ mod tests {
         // Sums alone are a list of parts, of equal masses, too.
         let sums = "ADCS total,12,1,2,3,1,1,1\nEPS total,5,0,0,0,1,1,1\nBus total,17,9,9,9,1,1,1\n";
         assert!(read(&format!("{HEAD}{sums}")).is_ok());
+    }
+
+    /// A column beside the names may say it: descriptions, an index, or the first one.
+    #[test]
+    fn a_total_may_say_so_beside_its_name() {
+        for heading in ["Description", "Item", "id", "element", "No."] {
+            for word in ["TOTAL", "Subtotal", "Bus total", "Mean", "panel"] {
+                let head = format!("{heading},name,mass,Cx,Cy,Cz,Ixx,Iyy,Izz");
+                let text = format!(
+                    "{head}\na,A-1,4,0,0,0,1,1,1\nb,A-2,6,0,0,0,1,1,1\n{word},A-3,10,0,0,0,1,1,1\n"
+                );
+                match read(&text) {
+                    Ok(_) => assert_eq!(word, "panel", "{text}"),
+                    Err(error) => {
+                        let said = format!(
+                            "line 4: {word}: the name is that of a row which sums up others"
+                        );
+                        assert!(error.to_string().starts_with(&said) && word != "panel", "{error}");
+                    }
+                }
+            }
+        }
     }
 }
