@@ -1,12 +1,12 @@
 //! What a model of statements gives rise to: contradictions, and what has been left open.
 
 use gyradius_dispersion::{RootLaw, RootMoments};
-use gyradius_statistics::tail;
 use nalgebra::Matrix3;
 
 use super::{
     MissedBecause, Stated, StatedModel, StatementError, StatementWarning,
     entries::Forms,
+    impossible::impossible_share,
     scatter::{Body, Scatter},
     task::Solution,
 };
@@ -244,18 +244,9 @@ fn of_outcome(model: &StatedModel) -> Vec<StatementWarning> {
     let (nominal, implied) = (model.nominal(), model.implied());
     let mut warnings = Vec::new();
     if let [Some(a), Some(b), Some(c), ..] = model.stated() {
-        // To first order K_k moves by Σ_a (½ − r_ka²) I_aa, the products staying as they are.
-        let r = nominal.principal_axes().attitude().to_rotation_matrix();
-        let scatter = |k: usize| {
-            let part = |e: usize, d: f64| ((0.5 - r[(k, e)] * r[(k, e)]) * d).powi(2);
-            (part(0, a) + part(1, b) + part(2, c)).sqrt()
-        };
-        for (axis, k) in (1..).zip(nominal.second_moments().values()) {
-            let scatter = scatter(axis - 1);
-            let share = if scatter > 0.0 { tail::normal(k / scatter) } else { 0.0 };
-            if share > IMPOSSIBLE {
-                warnings.push(StatementWarning::Impossible { axis, share });
-            }
+        let share = impossible_share(nominal, [a, b, c]);
+        if share > IMPOSSIBLE {
+            warnings.push(StatementWarning::Impossible { share });
         }
     }
     let roots = nominal.second_moments().roots().values();

@@ -5,6 +5,7 @@ mod curvature;
 mod diagnosis;
 mod entries;
 mod frame;
+mod impossible;
 pub(crate) mod levenberg_marquardt;
 mod nodes;
 mod parts;

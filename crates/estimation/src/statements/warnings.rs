@@ -45,10 +45,9 @@ pub enum StatementWarning {
     },
     /// The second moments are correlated, for no independent ones were found that have the stated deviations.
     Correlated,
-    /// Moments that scatter as stated and independently would often be those of no body.
+    /// Moments that scatter as stated would often be those of no body, if they were independent normal numbers beside the nominal
+    /// products.
     Impossible {
-        /// The principal axis whose second moment would be negative, from 1.
-        axis: usize,
         /// How often.
         share: f64,
     },
@@ -179,7 +178,7 @@ impl StatementWarning {
             Self::Raised { entry, mean } => Some(format!("{}: {}", NAMES[entry], Short(mean))),
             Self::Alone { entry, alone, stated } => beside(entry, alone, stated),
             Self::CentreMissed { entry, wanted, implied } => beside(entry, implied, wanted),
-            Self::Impossible { axis, share } => Some(format!("K{axis}: {:.1} %", 100.0 * share)),
+            Self::Impossible { share } => Some(format!("{:.1} %", 100.0 * share)),
             Self::Flat { axis, ratio } => Some(format!("k{axis}: {ratio:.1} deviations")),
             Self::EqualMoments { axes: [a, b] } => Some(format!("moments {a} and {b}")),
             Self::Free { axis } => Some(format!("axis {axis}")),
@@ -244,11 +243,11 @@ impl fmt::Display for StatementWarning {
                 "the second moments are correlated: no independent ones were found that have the deviations \
                  that follow from what is stated",
             ),
-            Self::Impossible { axis, share } => write!(
+            Self::Impossible { share } => write!(
                 f,
-                "the moments as stated contradict realizability: scattered independently, {:.1} % of \
-                 the bodies would break the triangle inequality (K{axis} < 0); the model has none of \
-                 these",
+                "the moments as stated contradict realizability: scattered independently, as normal numbers \
+                 beside the nominal products, {:.1} % of the bodies would break the triangle inequality; the \
+                 model has none of these",
                 100.0 * share
             ),
             Self::Flat { axis, ratio } => write!(
