@@ -16,6 +16,8 @@ use crate::turns::FIXED;
 const AGREE: f64 = 0.03;
 /// And by no more than this share of the largest one stated.
 const SMALL: f64 = 1e-4;
+/// Of what a mass centre adds, by no more than this share of the largest one beside it: the search hardly counts it.
+const SMALL_BESIDE: f64 = 1e-3;
 /// A moment that is stated not to scatter is still up to this share of the trace, and one that is not larger is none.
 const STILL: f64 = 1e-6;
 /// A share of impossible bodies that is worth a word.
@@ -87,6 +89,8 @@ impl Context {
     /// The entries that do not have what the mass centre would give them.
     fn centre_missed(&self, model: &StatedModel) -> Vec<StatementWarning> {
         let implied = model.implied().deviations();
+        // Axes that are held still turn what scatters by as much.
+        let held = FIXED * model.nominal().matrix().trace();
         let mut warnings = Vec::new();
         for three in [0..3, 3..6] {
             let wanted = &self.with_centre[three.clone()];
@@ -94,7 +98,7 @@ impl Context {
             for (entry, wanted) in three.zip(wanted) {
                 let Some(wanted) = *wanted else { continue };
                 let off = (implied[entry] - wanted).abs();
-                if off > (AGREE * wanted).max(SMALL * largest) {
+                if off > (AGREE * wanted).max(SMALL_BESIDE * largest).max(held) {
                     let implied = implied[entry];
                     warnings.push(StatementWarning::CentreMissed { entry, wanted, implied });
                 }

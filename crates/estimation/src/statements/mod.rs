@@ -181,10 +181,15 @@ struct Stated {
 impl Stated {
     /// What is asked of the inertia, the mass having this relative standard deviation.
     fn task(&self, body: Body, nominal: &Inertia, mass: Option<f64>) -> Task {
+        // Where the mass centre alone turns the axes, it adds no less than they scatter where they are held.
+        let only_held = self.axes.is_none() && self.products.is_none();
+        let least = if only_held { body.held_variances() } else { [0.0; 6] };
         let asked = |stated: Option<[f64; 3]>, first: usize, spoken: bool| match stated {
             Some(deviations) => Asked::Stated(deviations),
             None => match self.centre {
-                Some(centre) if !spoken => Asked::Added(std::array::from_fn(|i| centre[first + i])),
+                Some(centre) if !spoken => {
+                    Asked::Added(std::array::from_fn(|i| centre[first + i].max(least[first + i])))
+                }
                 _ => Asked::Nothing,
             },
         };

@@ -75,6 +75,12 @@ impl Body {
         Forms::over(&self.turns(scatter), Rule::QUICK)
     }
 
+    /// Variances of the entries of a body that is held still: the law of the axes holds them no closer.
+    pub(super) fn held_variances(&self) -> [f64; 6] {
+        let held = Scatter { roots: Matrix3::zeros(), rotations: Matrix3::zeros() };
+        Forms::over(&self.turns(&held), Rule::QUICK).variances(&self.second_moments(&held))
+    }
+
     /// Moments of the entries of the law that scatters so.
     pub(super) fn moments(&self, scatter: &Scatter, law: &Law) -> EntryMoments {
         let turns = self.turns(scatter);

@@ -10,6 +10,7 @@ use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::Distribution;
 
+mod centre;
 mod planted;
 mod reasons;
 mod sizes;
