@@ -229,18 +229,33 @@ fn follows_in_part(model: &StatedModel, stated: &Stated) -> Option<StatementWarn
     })
 }
 
-/// What the mass centre alone does may not exceed what is stated of the whole.
+/// What the mass centre alone does may not exceed what is stated of the whole: of an entry, or of the axes, which turn a product
+/// of which nothing else is stated.
 fn centre_alone(model: &StatedModel, stated: &Stated) -> Vec<StatementWarning> {
     let Some(centre) = stated.centre else { return Vec::new() };
-    let entries = model.stated().into_iter().zip(centre).enumerate();
-    entries
-        .filter_map(|(entry, (stated, variance))| {
-            let (stated, alone) = (stated?, variance.sqrt());
-            // By less than a thousandth, nobody sees it.
-            let more = alone > stated * 1.001;
-            more.then_some(StatementWarning::Alone { entry, alone, stated })
-        })
-        .collect()
+    let alone = centre.map(f64::sqrt);
+    let implied = model.implied().deviations();
+    let little = SMALL_BESIDE * alone[3..].iter().copied().fold(0.0, f64::max);
+    let little = little.max(FIXED * model.nominal().matrix().trace());
+    let mut warnings = Vec::new();
+    for (entry, stated_of_it) in model.stated().into_iter().enumerate() {
+        let (alone, implied) = (alone[entry], implied[entry]);
+        match stated_of_it {
+            Some(stated) => {
+                // By less than a thousandth, nobody sees it.
+                if alone > stated * 1.001 {
+                    warnings.push(StatementWarning::Alone { entry, alone, stated });
+                }
+            }
+            None => {
+                let more = alone > implied + (AGREE * alone).max(little);
+                if entry >= 3 && stated.axes.is_some() && more {
+                    warnings.push(StatementWarning::CentreBesideAxes { entry, alone, implied });
+                }
+            }
+        }
+    }
+    warnings
 }
 
 /// What the law itself has of note.

@@ -50,7 +50,8 @@ const TRACES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
 ///   well, this is a part of what is stated of them, and the inertia follows the mass as far as the
 ///   statements allow.
 /// * *Centre*: the mass centre adds what parallel axes add to those entries of which nothing is stated.
-///   Of entries that are stated it is a part, and is only compared with them.
+///   Of entries that are stated it is a part, and is only compared with them. So it is of stated axes, whose turns make the
+///   products.
 /// * *Products* and *axes* both limit the axes: about each axis the tighter one holds.
 /// * *Moments* come before *products*: where both cannot be had, the moments are as stated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -207,7 +208,7 @@ impl Stated {
             body,
             trace: nominal.matrix().trace(),
             moments: asked(self.moments, 0, false),
-            // Of the products beside stated axes nothing else need be said.
+            // What a mass centre adds to products is a part of what turns the stated axes.
             products: asked(self.products, 3, self.axes.is_some()),
             axes: self.axes.map(|axes| axes.map(|deviation| deviation * deviation)),
             mass: mass.map(|relative| (relative, most(relative))),

@@ -84,6 +84,17 @@ pub enum StatementWarning {
         #[cfg_attr(feature = "serde", serde(rename = "stated_kg_m2"))]
         stated: f64,
     },
+    /// The mass centre alone moves a product more than the axes let it, as they are stated.
+    CentreBesideAxes {
+        /// The entry.
+        entry: usize,
+        /// What it does alone, kg·m².
+        #[cfg_attr(feature = "serde", serde(rename = "alone_kg_m2"))]
+        alone: f64,
+        /// As it comes out, kg·m².
+        #[cfg_attr(feature = "serde", serde(rename = "implied_kg_m2"))]
+        implied: f64,
+    },
     /// The mass centre would move an entry of which nothing is stated by more or less than comes out.
     CentreMissed {
         /// The entry.
@@ -177,6 +188,7 @@ impl StatementWarning {
             Self::Shifted { entry, percent } => Some(format!("{} {percent:+.1} %", NAMES[entry])),
             Self::Raised { entry, mean } => Some(format!("{}: {}", NAMES[entry], Short(mean))),
             Self::Alone { entry, alone, stated } => beside(entry, alone, stated),
+            Self::CentreBesideAxes { entry, alone, implied } => beside(entry, implied, alone),
             Self::CentreMissed { entry, wanted, implied } => beside(entry, implied, wanted),
             Self::Impossible { share } => Some(format!("{:.1} %", 100.0 * share)),
             Self::Flat { axis, ratio } => Some(format!("k{axis}: {ratio:.1} deviations")),
@@ -273,6 +285,14 @@ impl fmt::Display for StatementWarning {
                     f,
                     "the mass centre alone would move {name} by {alone} kg·m², which is more than the \
                      {stated} stated of it: the statement on {name} is taken"
+                )
+            }
+            Self::CentreBesideAxes { entry, alone, implied } => {
+                let (name, alone, implied) = (NAMES[entry], Short(alone), Short(implied));
+                write!(
+                    f,
+                    "the mass centre alone would move {name} by {alone} kg·m², and {implied} comes out: it \
+                     would turn the axes farther than is stated of them, and the statement on the axes is taken"
                 )
             }
             Self::CentreMissed { entry, wanted, implied } => {
