@@ -23,7 +23,7 @@ use std::{
 };
 
 use crate::{
-    Fleet, Notice, Options, StudyError, Summary,
+    Notice, Options, StudyError, Summary,
     contents::{contents, identity},
     decisions,
     drivers::Finding,
@@ -328,10 +328,9 @@ pub(crate) fn put_together<C: Subject>(
     // Of runs that a rule is to end, the last one that is there is the last that there is to be so far, of whole vehicles.
     let blocks = told(folder, &contents(scenario), &identity(scenario))?;
     let end = blocks.iter().map(|block| block.range().end).max().unwrap_or(scenario.runs());
-    let end = end.next_multiple_of(scenario.fleet().map_or(1, Fleet::flights));
-    let end = end.min(until.most_runs());
+    let end = scenario.whole_vehicles(end).min(until.most_runs());
     let so_far = Ended::not_yet(until);
-    let scenario = scenario.ended_after(end, until.first_look())?;
+    let scenario = scenario.ended_after(end, until)?;
     do_what_is_left(&scenario, &options, (Doing::Nothing, Some(so_far)), &|_| {}, say)
 }
 

@@ -241,15 +241,14 @@ impl Blocks {
 
     /// Leaves out the blocks that go beyond so many runs, which `force` allows.
     fn limit(&self, runs: u64, force: bool) -> Result<(), Problem> {
-        let mut state = self.locked();
-        let most = state.blocks.iter().map(|block| block.range().end).max().unwrap_or(0);
+        let most = self.end();
         if most > runs && !force {
             let said = |runs: u64| Some(runs.to_string());
             let field = "runs".to_owned();
             let difference = Difference { field, there: said(most), here: said(runs) };
             return Err(Problem::Unfinished { difference });
         }
-        state.blocks.retain(|block| block.range().end <= runs);
+        self.locked().blocks.retain(|block| block.range().end <= runs);
         Ok(())
     }
 
@@ -324,10 +323,10 @@ impl Blocks {
         missing_runs(finished.map(|block| block.range()), runs, block_runs)
     }
 
-    /// One more than the last run of a model that is in a block; none if there is no block of it.
-    pub(crate) fn end(&self, model: &str) -> Option<u64> {
-        let state = self.locked();
-        state.blocks.iter().filter(|b| b.model == model).map(|block| block.range().end).max()
+    /// One more than the last run that is in a block, of any model; 0 if there is no block.
+    #[must_use]
+    pub fn end(&self) -> u64 {
+        self.locked().blocks.iter().map(|block| block.range().end).max().unwrap_or(0)
     }
 
     /// The runs of each of the blocks of a model that have at least so many failed runs.

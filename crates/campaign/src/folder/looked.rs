@@ -15,6 +15,15 @@ impl Blocks {
         let told = self.area.tell_looked();
         told.map_err(|problem| FolderError { path: self.place.clone(), problem })
     }
+
+    /// Tells those who go on with the campaign, in the text from which they do, what was only found out after it was begun.
+    ///
+    /// # Errors
+    /// That cannot be written.
+    pub fn begun_as(&self, mark: &str) -> Result<(), FolderError> {
+        let told = self.area.tell(mark, None);
+        told.map_err(|problem| FolderError { path: self.place.clone(), problem })
+    }
 }
 
 impl Folder<'_> {

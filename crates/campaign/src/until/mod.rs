@@ -19,12 +19,12 @@ pub use work::{End, run_until};
 ///
 /// The runs are looked at after the first `look_every`, and then after each `look_every` more, or a tenth more in whole
 /// `look_every`, if that is more.
-/// In a file it is a table with the keys `rule`, `look_every` and `most_runs`.
+/// In a file it is a table with the keys `rule`, `look_every` and `most_runs`, and `first_look` if that is said.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Form", into = "Form")]
 pub struct Until {
     rule: StoppingRule,
-    /// After how many runs the first look is, if there were more runs than the rule asks for before it was asked.
+    /// After how many runs the first look is, if there were more runs than the rule asks for before it was asked: `most_runs` at most.
     first_look: Option<u64>,
     look_every: u64,
     most_runs: u64,
@@ -72,9 +72,7 @@ impl Until {
     /// A number is 0.
     pub fn new(rule: StoppingRule, look_every: u64, most_runs: u64) -> Result<Self, UntilError> {
         for (field, number) in [("look_every", look_every), ("most_runs", most_runs)] {
-            if number == 0 {
-                return Err(UntilError::None { field });
-            }
+            positive(field, number)?;
         }
         Ok(Self { rule, first_look: None, look_every, most_runs })
     }
@@ -82,7 +80,8 @@ impl Until {
     /// The same with another greatest number of runs, at least one.
     #[must_use]
     pub fn with_most_runs(self, runs: u64) -> Self {
-        Self { most_runs: runs.max(1), ..self }
+        let first_look = self.first_look;
+        Self { most_runs: runs.max(1), ..self }.looked_at_from(first_look)
     }
 
     /// What ends it.
@@ -103,10 +102,17 @@ impl Until {
         self.most_runs
     }
 
-    /// The same, with no look before so many runs, at least one: for there were so many before the rule was asked.
-    #[must_use]
-    pub fn with_first_look(self, runs: Option<u64>) -> Self {
-        Self { first_look: runs.map(|runs| runs.max(1)), ..self }
+    /// The same, with no look before so many runs, or before the greatest number if that is less.
+    ///
+    /// # Errors
+    /// The number is 0.
+    pub fn with_first_look(self, runs: Option<u64>) -> Result<Self, UntilError> {
+        runs.map_or(Ok(()), |runs| positive("first_look", runs))?;
+        Ok(self.looked_at_from(runs))
+    }
+
+    fn looked_at_from(self, runs: Option<u64>) -> Self {
+        Self { first_look: runs.map(|runs| runs.min(self.most_runs)), ..self }
     }
 
     /// After how many runs the first look is, if that is said.
@@ -239,7 +245,7 @@ impl TryFrom<Form> for Until {
 
     fn try_from(form: Form) -> Result<Self, UntilError> {
         let Form { rule, first_look, look_every, most_runs } = form;
-        Ok(Self::new(rule, look_every, most_runs)?.with_first_look(first_look))
+        Self::new(rule, look_every, most_runs)?.with_first_look(first_look)
     }
 }
 
@@ -248,6 +254,10 @@ impl From<Until> for Form {
         let Until { rule, first_look, look_every, most_runs } = until;
         Self { rule, first_look, look_every, most_runs }
     }
+}
+
+fn positive(field: &'static str, runs: u64) -> Result<(), UntilError> {
+    if runs == 0 { Err(UntilError::None { field }) } else { Ok(()) }
 }
 
 /// Why a rule is refused.

@@ -21,9 +21,15 @@ fn rules() -> impl Strategy<Value = StoppingRule> {
 proptest! {
     /// What is written reads back, as a line and in a table.
     #[test]
-    fn rules_read_back(rule in rules(), look_every in 1..u64::MAX >> 1, most_runs in 1..u64::MAX >> 1) {
+    fn rules_read_back(
+        rule in rules(),
+        look_every in 1..u64::MAX >> 1,
+        most_runs in 1..u64::MAX >> 1,
+        first_look in prop::option::of(1..u64::MAX >> 1),
+    ) {
         prop_assert_eq!(rule.to_string().parse::<StoppingRule>().unwrap(), rule.clone());
         let until = Until::new(rule, look_every, most_runs).unwrap();
+        let until = until.with_first_look(first_look).unwrap();
         let text = serde_json::to_string(&until).unwrap();
         prop_assert_eq!(serde_json::from_str::<Until>(&text).unwrap(), until);
     }
@@ -48,10 +54,18 @@ proptest! {
             prop_assert!(more > 0 && more <= look_every.max(pair[0] / 10));
             prop_assert!(pair[1] == most_runs || more % look_every == 0);
         }
-        // Later, if there were runs before.
-        let late: Vec<u64> = until.with_first_look(Some(there)).looks().collect();
-        prop_assert_eq!(late[0], there.max(1).min(most_runs));
-        prop_assert_eq!(*late.last().unwrap(), most_runs);
+        // Later, if there were runs before, and after the greatest number at the latest, whichever is said first.
+        let late = until.clone().with_first_look(Some(there));
+        prop_assert_eq!(late.is_ok(), there > 0);
+        if let Ok(late) = late {
+            let fewer = Until::new(StoppingRule::Decided, look_every, 3_000_000).unwrap();
+            let fewer = fewer.with_first_look(Some(there)).unwrap().with_most_runs(most_runs);
+            prop_assert_eq!(&fewer, &late);
+            let looks: Vec<u64> = late.looks().collect();
+            prop_assert_eq!(late.first_look(), Some(looks[0]));
+            prop_assert_eq!(looks[0], there.min(most_runs));
+            prop_assert_eq!(*looks.last().unwrap(), most_runs);
+        }
     }
 }
 
@@ -80,9 +94,12 @@ fn other_rules_are_refused() {
     }
     assert!(Until::new(StoppingRule::Decided, 0, 1).is_err());
     assert!(Until::new(StoppingRule::Decided, 1, 0).is_err());
-    let table = r#"{"rule": "decided", "look_every": 0, "most_runs": 5}"#;
-    let refused = serde_json::from_str::<Until>(table).unwrap_err().to_string();
-    assert!(refused.contains("look_every = 0"), "{refused}");
+    for none in ["look_every", "most_runs", "first_look"] {
+        let table = r#"{"rule": "decided", "first_look": 5, "look_every": 5, "most_runs": 5}"#;
+        let table = table.replace(&format!("\"{none}\": 5"), &format!("\"{none}\": 0"));
+        let refused = serde_json::from_str::<Until>(&table).unwrap_err().to_string();
+        assert!(refused.contains(&format!("{none} = 0")), "{refused}");
+    }
 }
 
 /// A table of numbers, none of which is a failed run.

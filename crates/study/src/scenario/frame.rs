@@ -26,14 +26,19 @@ pub(crate) trait Framed: Sized {
     fn requirements(&self) -> &[Requirement];
     /// Until when its runs go on, if not to their number.
     fn until(&self) -> Option<&Until>;
-    /// The same, whose runs ended after so many, and were looked at first after so many, if that is said.
-    fn ended_after(&self, runs: u64, first_look: Option<u64>) -> Result<Self, ScenarioError>;
+    /// The same, whose runs ended after so many, looked at as this says by its own rule.
+    fn ended_after(&self, runs: u64, until: &Until) -> Result<Self, ScenarioError>;
     /// Base runs by which it is found what drives the outcome, if that is asked.
     fn drivers(&self) -> Option<u64>;
     /// Names of the models, in order.
     fn model_names(&self) -> impl Iterator<Item = &str>;
     /// The resolved scenario.
     fn to_toml(&self) -> String;
+
+    /// So many runs, and those that are left of the last vehicle, if there are vehicles.
+    fn whole_vehicles(&self, runs: u64) -> u64 {
+        runs.next_multiple_of(self.fleet().map_or(1, Fleet::flights))
+    }
 
     /// The place of the model that is asked for by its name; of the first if none is.
     fn place_of(&self, model: Option<&str>) -> Result<usize, ScenarioError> {
@@ -320,14 +325,11 @@ macro_rules! framed {
                 self.until()
             }
 
-            fn ended_after(
-                &self,
-                runs: u64,
-                first_look: Option<u64>,
-            ) -> Result<Self, ScenarioError> {
+            fn ended_after(&self, runs: u64, until: &Until) -> Result<Self, ScenarioError> {
                 let mut ended = self.clone().ended(self.size.of_all(runs)?);
+                let first_look = until.first_look();
                 ended.file.until = ended.file.until.map(|own| own.with_first_look(first_look));
-                ended.until = ended.until.map(|own| own.with_first_look(first_look));
+                ended.until = ended.until.map(|_| until.clone());
                 Ok(ended)
             }
 

@@ -77,7 +77,9 @@ impl UntilFile {
         let flights = size.fleet().map_or(1, Fleet::flights);
         let every = *self.look_every.get_or_insert(usual.next_multiple_of(flights));
         let most = *self.most_runs.get_or_insert(size.runs());
-        for (key, number) in [("look_every", every), ("most_runs", most)] {
+        let stated = self.first_look.map(|first| ("first_look", first));
+        for (key, number) in [("look_every", every), ("most_runs", most)].into_iter().chain(stated)
+        {
             if !number.is_multiple_of(flights) {
                 let problem = format!(
                     "{number}: it must be a multiple of {flights}, the flights of a vehicle"
@@ -90,15 +92,37 @@ impl UntilFile {
             return refused("most_runs", problem);
         }
         size.of_all(most).map_err(|problem| ScenarioError::field("until.most_runs", problem))?;
-        let until = Until::new(self.rule.clone(), every, most);
-        let until = until.map_err(|error| ScenarioError::field(FIELD, error))?;
-        Ok(until.with_first_look(self.first_look))
+        let until = Until::new(self.rule.clone(), every, most)
+            .and_then(|until| until.with_first_look(self.first_look));
+        until.map_err(|error| ScenarioError::field(FIELD, error))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use crate::Scenario;
+
+    /// With any number of flights: looks are at whole vehicles, and at one at least.
+    #[test]
+    fn looks_are_at_whole_vehicles() {
+        let peck = Scenario::peck_2003().unwrap().to_toml();
+        let rest: Vec<&str> = peck.lines().filter(|line| !line.starts_with("runs =")).collect();
+        for flights in 1..6 {
+            for (key, number) in ["first_look", "look_every", "most_runs"]
+                .into_iter()
+                .flat_map(|key| (0..40).map(move |number| (key, number)))
+            {
+                let size = format!("vehicles = 1\nflights = {flights}");
+                let rule = "rule = \"mean(nutation_deg) within 1\"";
+                let text =
+                    format!("{size}\n{}\n[until]\n{rule}\n{key} = {number}\n", rest.join("\n"));
+                let given = Scenario::from_toml(&text);
+                assert_eq!(given.is_ok(), number > 0 && number % flights == 0, "{text}");
+                let refused = given.map_or_else(|error| error.to_string(), |_| key.to_owned());
+                assert!(refused.contains(key), "{refused}");
+            }
+        }
+    }
 
     /// Another rule, or another number of runs between looks, leaves the rest as the scenario has it.
     #[test]

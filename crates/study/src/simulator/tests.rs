@@ -4,6 +4,7 @@ mod again;
 mod failing;
 mod fleets;
 mod function;
+mod goes_on;
 mod interrupted;
 mod joint;
 mod kept;
