@@ -73,9 +73,12 @@ impl<'a> Answer<'a> {
         for (Name(key), value) in object.0 {
             let mut must = None;
             match &*key {
-                "run" => match serde_json::from_str(value.get()) {
-                    Ok(run) => answer.run = run,
-                    Err(_) => must = Some("a whole number that is not negative"),
+                "run" => match value.get() {
+                    "null" => answer.run = None,
+                    number => match whole(number) {
+                        Some(run) => answer.run = Some(run),
+                        None => must = Some("a whole number that is not negative"),
+                    },
                 },
                 "outputs" => match serde_json::from_str::<Option<Object<'_>>>(value.get()) {
                     // Where there are several, none of them is lost.
@@ -137,6 +140,12 @@ fn number(value: &&RawValue) -> f64 {
     let word = text.trim_matches('"');
     let number = word.parse().ok().filter(|number: &f64| number.is_infinite() || word == text);
     number.unwrap_or(f64::NAN)
+}
+
+/// The whole number that is not negative which a value is, if it is one: JSON has one kind of numbers, in which 17, 17.0 and 1.7e1 are the same.
+fn whole(value: &str) -> Option<u64> {
+    // Rust writes any float that is whole as its digits.
+    value.parse().ok().or_else(|| value.parse::<f64>().ok()?.to_string().parse().ok())
 }
 
 /// The word that stands in the place of a number, if it is one that programs write for a number that is not finite.
@@ -409,6 +418,35 @@ mod tests {
                     let is_told = reasons.iter().any(|reason| told.contains(reason));
                     prop_assert!(is_told || reasons.is_empty() && (told.contains("is not a finite number") || !all), "{answer}: {told}");
                 }
+            }
+        }
+
+        /// The number of a run is the number that is written, in whatever form, and only that one is taken.
+        #[test]
+        fn runs_are_numbers_in_any_form(
+            run in prop_oneof![0..2000_u64, 0..1_000_000_000_u64],
+            other in prop_oneof![Just(None), (0..2000_u64).prop_map(Some)],
+            form in 0..5_u8,
+        ) {
+            let columns = [Column::number("y", "1", "A number.")];
+            let answered = other.unwrap_or(run);
+            let written = match form {
+                0 => answered.to_string(),
+                1 => format!("{answered}.0"),
+                2 => format!("{answered}.000e0"),
+                3 => format!("{:e}", answered as f64),
+                _ => format!("{answered}00E-2"),
+            };
+            let answer = |run: &str| format!("{{\"run\": {run}, \"outputs\": {{\"y\": 1}}}}");
+            let found = read(answer(&written).as_bytes(), run, &columns);
+            match found {
+                Ok(_) => prop_assert_eq!(answered, run),
+                Err(Trouble::OutOfTurn { answered: told, .. }) => prop_assert!(told == answered && told != run),
+                Err(trouble) => prop_assert!(false, "{written}: {trouble:?}"),
+            }
+            for none in [format!("{answered}.5"), format!("-{answered}.5"), format!("\"{written}\""), "1e999".into()] {
+                let refused = read(answer(&none).as_bytes(), run, &columns).unwrap_err().failure();
+                prop_assert!(refused.message().contains("its `run` must be a whole number"), "{none}: {}", refused.message());
             }
         }
 
