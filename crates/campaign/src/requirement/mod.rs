@@ -125,6 +125,18 @@ struct RequirementForm {
     model: Option<String>,
 }
 
+/// A confidence with which a requirement cannot be met and not met at once.
+fn deciding(value: f64) -> Result<Confidence, RequirementError> {
+    let confidence = Confidence::new(value).ok().filter(|own| own.level() >= 0.5);
+    confidence.ok_or(RequirementError::Confidence { value })
+}
+
+/// That a requirement can ask for such a share of the runs, with any confidence that decides.
+fn possible(value: f64) -> Result<(), RequirementError> {
+    let asked = Acceptance::new(value, Confidence::default());
+    asked.map(drop).map_err(|_| RequirementError::Probability { value })
+}
+
 impl Requirement {
     /// That a quantity keeps a bound in at least the share `probability` of all runs, with this confidence. Runs that failed count
     /// against it.
@@ -140,12 +152,8 @@ impl Requirement {
         confidence: f64,
     ) -> Result<Self, RequirementError> {
         bound.check()?;
-        let value = confidence;
-        let confidence = Confidence::new(value).ok().filter(|own| own.level() >= 0.5);
-        let confidence = confidence.ok_or(RequirementError::Confidence { value })?;
-        // Its confidence is allowed.
-        Acceptance::new(probability, confidence)
-            .map_err(|_| RequirementError::Probability { value: probability })?;
+        let confidence = deciding(confidence)?;
+        possible(probability)?;
         let (name, failed_runs) = (name.to_owned(), FailedRuns::default());
         Ok(Self { name, quantity, bound, probability, confidence, failed_runs, model: None })
     }

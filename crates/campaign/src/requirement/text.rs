@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::{
-    Bound, Measured, Requirement, RequirementError,
+    Bound, Measured, Requirement, RequirementError, deciding, possible,
     words::{LEAST_PERCENT, Words},
 };
 use crate::number::{of_percent, plain};
@@ -16,9 +16,9 @@ pub(super) fn parse(text: &str) -> Result<Requirement, RequirementError> {
     let mut words = Words::new(text);
     let (measured, bound) = bounded(&mut words)?;
     words.expect("in")?;
-    let probability = words.required_share()?;
+    let probability = words.required_share(|share| possible(share).is_ok())?;
     words.expect("at")?;
-    let confidence = words.required_share()?;
+    let confidence = words.required_share(|share| deciding(share).is_ok())?;
     words.end()?;
     let requirement = Requirement::new("", measured, bound, probability, confidence)?;
     Ok(Requirement { name: requirement.to_string(), ..requirement })
@@ -187,7 +187,13 @@ mod tests {
                 prop_assert!((found.unwrap() - percent / 100.0).abs() < 1e-15);
             } else {
                 let refused = found.unwrap_err().to_string();
-                prop_assert!(percent > 1.0 || refused.contains(&format!("it must be {text} if that is the share, or ")), "{refused}");
+                // What is offered in its place is allowed there, and nothing that is allowed is kept back.
+                for share in [percent, of_percent(percent)] {
+                    let share = plain(share);
+                    let other = line.replace(&format!(" {text} %"), &format!(" {share}"));
+                    let is_offered = refused.contains(&format!(" {share} if "));
+                    prop_assert_eq!(is_offered, percent <= 1.0 && other.parse::<Requirement>().is_ok(), "{}", refused);
+                }
             }
         }
 

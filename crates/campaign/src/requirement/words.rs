@@ -113,8 +113,12 @@ impl<'a> Words<'a> {
         Ok((number, self.take("%")))
     }
 
-    /// The share that a requirement asks for. One of at most [`LEAST_PERCENT`] in percent is refused: it is most often one that is meant without.
-    pub(super) fn required_share(&mut self) -> Result<f64, RequirementError> {
+    /// The share that a requirement asks for, where not all shares are allowed. One of at most [`LEAST_PERCENT`] in percent is refused, with
+    /// those that are allowed of the two that may be meant: it is most often one that is meant without.
+    pub(super) fn required_share(
+        &mut self,
+        is_allowed: impl Fn(f64) -> bool,
+    ) -> Result<f64, RequirementError> {
         let before = self.clone();
         let (number, is_percent) = self.number_of_share()?;
         if !is_percent {
@@ -124,9 +128,20 @@ impl<'a> Words<'a> {
         if !(0.0 < number && number <= LEAST_PERCENT) {
             return Ok(share);
         }
-        let [itself, hundredth] = [number, share].map(plain);
+        let itself = plain(number);
+        let meant = [(number, "that".to_owned()), (share, format!("{itself} %"))];
+        let meant: Vec<String> = meant
+            .into_iter()
+            .filter(|(share, _)| is_allowed(*share))
+            .map(|(share, meant)| format!("{} if {meant} is the share", plain(share)))
+            .collect();
+        if meant.is_empty() {
+            // Refused for itself.
+            return Ok(share);
+        }
+        let meant = meant.join(", or ");
         Err(before.wrong(&format!(
-            "a share of at most 1 % is written without the sign: it must be {itself} if that is the share, or {hundredth} if {itself} % is"
+            "a share of at most 1 % is written without the sign: it must be {meant}"
         )))
     }
 
