@@ -84,7 +84,8 @@ pub fn run_changed<S: Simulation>(
     let Some((name, simulation)) = simulations.next() else { return Ok(None) };
     let empty = Table::new(name, 0, simulation.columns())?;
     let run = there.run;
-    let new = run_range(simulation, &empty, run..run.saturating_add(1), &|_| Ok(()))?;
+    let new = run_range(simulation, &empty, run..run.saturating_add(1), &|_| Ok(()));
+    let new = new.map_err(CampaignError::in_blocks)?;
     let Some(again) = new.rows().next() else { return Ok(None) };
     let now = |column: &str| again.cell(column).unwrap_or(Cell::Null);
     let kind = Column::status_kind();
@@ -114,7 +115,8 @@ fn redone<S: Simulation>(
     let failed: Vec<u64> = old.failures().map(|(run, _)| run).collect();
     let rows = Mutex::new(Vec::new());
     failed.into_par_iter().try_for_each(|run| {
-        let table = run_range(simulation, empty, run..run.saturating_add(1), more)?;
+        let table = run_range(simulation, empty, run..run.saturating_add(1), more);
+        let table = table.map_err(CampaignError::in_blocks)?;
         rows.lock().unwrap_or_else(PoisonError::into_inner).push(table);
         Ok::<_, CampaignError>(())
     })?;

@@ -153,7 +153,8 @@ pub fn run_missing<S: Simulation>(
         let table = run_range(&simulations[place].1, &tables[place], runs, &|runs| {
             more(runs);
             go_on(plan.stop.map(Arc::as_ref))
-        })?;
+        });
+        let table = table.map_err(CampaignError::in_blocks)?;
         blocks.write(&table)?;
         if let Some(look) = look {
             look(place, &table);

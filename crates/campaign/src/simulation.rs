@@ -262,9 +262,9 @@ pub enum CampaignError {
         rows: usize,
     },
     /// Runs do not count, though none of them is to blame ([`Simulation::fault`]).
-    #[error("{problem}; the runs of the blocks that were finished before are kept")]
+    #[error("{problem}")]
     Fault {
-        /// What is wrong.
+        /// What is wrong, and what of the runs is kept, if anything is.
         problem: String,
     },
     /// A block of runs that was there cannot be read.
@@ -285,6 +285,20 @@ pub enum CampaignError {
         /// What is wrong.
         problem: String,
     },
+}
+
+impl CampaignError {
+    /// The same, where runs are done in blocks, which stay.
+    pub(crate) fn in_blocks(self) -> Self {
+        match self {
+            Self::Fault { problem } => Self::Fault {
+                problem: format!(
+                    "{problem}; the runs of the blocks that were finished before are kept"
+                ),
+            },
+            other => other,
+        }
+    }
 }
 
 impl From<RunsError> for CampaignError {

@@ -348,6 +348,9 @@ fn a_run_without_a_temporary_folder_is_no_failed_run() {
         let [_, err] = said(&output);
         let told = "a temporary folder for a run cannot be used in /nonexistent: No such file";
         assert!(output.status.code() == Some(2) && err.contains(told), "{words:?}: {err}");
+        // Its name would be another one each time; and only a study keeps runs.
+        assert!(!err.contains("gyradius-run-"), "{words:?}: {err}");
+        assert_eq!(err.contains("are kept"), words == study, "{words:?}: {err}");
     }
     assert!(!scratch.path("it/report.html").exists());
     let output = scratch.run(&study);

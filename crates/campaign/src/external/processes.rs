@@ -216,10 +216,11 @@ impl Processes {
     /// Notes that the temporary folder of a run cannot be used.
     fn no_folder(&self, error: io::Error) -> Trouble {
         let place = std::env::temp_dir();
-        // Without the name of the folder, which is another one each time.
-        let error = error.raw_os_error().map_or(error, io::Error::from_raw_os_error);
+        // Without the name of the folder, which is another one each time: tempfile writes it behind what the system says.
+        let said = error.to_string();
+        let said = said.split_once(" at path ").map_or(&*said, |(said, _)| said);
         self.of_machine.get_or_init(|| {
-            format!("a temporary folder for a run cannot be used in {}: {error}", place.display())
+            format!("a temporary folder for a run cannot be used in {}: {said}", place.display())
         });
         Trouble::Files(error)
     }
