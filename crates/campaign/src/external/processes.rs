@@ -153,8 +153,7 @@ impl Processes {
             return Err(Trouble::Stopped);
         }
         if self.program.is_per_run() {
-            let answer = self.ask_with_files(request)?;
-            return read(&answer).map_err(Trouble::in_a_file);
+            return self.ask_with_files(request, read);
         }
         let ask = |mut child: Child, kept: &mut Option<Child>| {
             let result =
@@ -234,15 +233,32 @@ impl Processes {
         }
     }
 
-    /// Starts a process for one run, which reads and writes files.
-    fn ask_with_files(&self, request: &[u8]) -> Result<Vec<u8>, Trouble> {
+    /// Starts a process for one run, which reads and writes files, and gives the answer to `read`.
+    fn ask_with_files<T>(
+        &self,
+        request: &[u8],
+        read: impl Fn(&[u8]) -> Result<T, Trouble>,
+    ) -> Result<T, Trouble> {
         let folder = tempfile::Builder::new().prefix("gyradius-run-").tempdir();
         let folder = folder.map_err(|error| self.no_folder(error))?;
         let input = fs::write(folder.path().join("input.json"), request);
         input.map_err(|error| self.no_folder(error))?;
         let child = Child::start_in(&self.program, folder.path());
-        child.map_err(|error| self.not_started(error))?.finish(self.program.patience())?;
-        self.left(&folder.path().join("output.json"))
+        let mut child = child.map_err(|error| self.not_started(error))?;
+        let ended = child.finish(self.program.patience());
+        let answer = || {
+            let answer = self.left(&folder.path().join("output.json"))?;
+            read(&answer).map_err(Trouble::in_a_file)
+        };
+        match ended {
+            Ok(()) => answer(),
+            // Nothing may leave out a run that came to an infinite number, whatever became of the process after that.
+            Err(failed @ Trouble::Status { .. }) => {
+                let other = answer().err();
+                Err(failed.beside(other.map_or_else(Vec::new, |other| other.infinite().to_vec())))
+            }
+            Err(other) => Err(other),
+        }
     }
 
     /// The file that a process left.

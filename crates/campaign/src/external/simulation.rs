@@ -77,7 +77,8 @@ pub trait Inputs: Sync {
 /// A run fails, and its row says why, if its inputs cannot be drawn or are not finite; if the answer does not come in
 /// time, is too long, no JSON, written before the run was sent whole, that of another run, or followed by more; if a declared
 /// output is missing, repeated or not a finite number, or one is not declared; if the process ends or closes its pipes; and if the simulator says so.
-/// An infinite output stays in the row of the run, whatever else is wrong with the answer, so that requirements on it count the run. A process
+/// An infinite output stays in the row of the run, whatever else is wrong with the answer, so that requirements on it count the run, and also if
+/// a process that was started for the run has answered and then ended with an error. A process
 /// that did not answer as agreed is killed with everything in its process group. If it had done runs before, the run is
 /// sent once more, to a process that is started for it alone, and what that does counts. So a run depends on its inputs
 /// alone, as long as the simulator itself keeps nothing from one run to the next, and a process that spoils itself spoils
