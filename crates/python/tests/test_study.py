@@ -154,7 +154,7 @@ def test_rows_are_what_the_function_says(
         ({"y": math.inf, "z": 1.0}, "the output `y` is not a finite number"),
         ({"y": 1.0, "z": 1.0, "w": 1.0}, "has an output `w`, which is not declared"),
         ({"y": 1.0, "z": "one"}, "TypeError: the output `z` is str: it must be a number"),
-        ({"y": 1.0, "z": 10**400}, "TypeError: the output `z` is int: it must be a number that a float can hold"),
+        ({"y": 1.0, "z": 10**400}, "the output `z` is not a finite number: inf"),
         ({"y": 1.0, "z": 1j}, "TypeError: the output `z` is complex: it must be a number"),
         ({"y": 1.0, 2: 1.0}, "TypeError: the name of an output is int"),
         (None, "TypeError: the simulation returned NoneType: it must return a dictionary"),

@@ -20,12 +20,23 @@ pub type Outputs = Vec<(String, f64)>;
 #[derive(Clone)]
 pub struct SimulatorFunction(Arc<Run>);
 
-type Run = dyn Fn(&RunInputs<'_>) -> Result<Outputs, String> + Send + Sync;
+type Run = dyn Fn(&RunInputs<'_>) -> (Outputs, Option<String>) + Send + Sync;
 
 impl SimulatorFunction {
     /// Of a function of the program.
     pub fn new(
         function: impl Fn(&RunInputs<'_>) -> Result<Outputs, String> + Send + Sync + 'static,
+    ) -> Self {
+        Self::partly(move |inputs| match function(inputs) {
+            Ok(outputs) => (outputs, None),
+            Err(text) => (Outputs::new(), Some(text)),
+        })
+    }
+
+    /// Of a function of the program that returns outputs also of a run that failed, with the text that says why: those of them that
+    /// are infinite stay in the row.
+    pub fn partly(
+        function: impl Fn(&RunInputs<'_>) -> (Outputs, Option<String>) + Send + Sync + 'static,
     ) -> Self {
         Self(Arc::new(function))
     }
@@ -35,7 +46,10 @@ impl SimulatorFunction {
     /// # Errors
     /// The text that says why the run failed.
     pub fn run(&self, inputs: &RunInputs<'_>) -> Result<Outputs, String> {
-        (self.0)(inputs)
+        match (self.0)(inputs) {
+            (outputs, None) => Ok(outputs),
+            (_, Some(text)) => Err(text),
+        }
     }
 
     /// Does a run, and gives the declared outputs in their order; `told` is shown what the function returned.
@@ -43,14 +57,16 @@ impl SimulatorFunction {
         &self,
         inputs: &RunInputs<'_>,
         outputs: &[Column],
-        told: impl FnOnce(&Result<Outputs, String>),
+        told: impl FnOnce(&Outputs, Option<&str>),
     ) -> Result<Vec<f64>, Trouble> {
         // What a function leaves half done when it panics is its own.
-        let answer = catch_unwind(AssertUnwindSafe(|| self.run(inputs)))
+        let (answered, failed) = catch_unwind(AssertUnwindSafe(|| (self.0)(inputs)))
             .map_err(|panic| Trouble::Panicked { text: text(&*panic) })?;
-        told(&answer);
-        let answered = answer.map_err(|text| Trouble::Error { text })?;
-        declared(answered, outputs, |number| *number, f64::to_string)
+        told(&answered, failed.as_deref());
+        let numbers = declared(answered, outputs, |number| *number, f64::to_string);
+        let Some(text) = failed else { return numbers };
+        let infinite = numbers.err().map(|other| other.infinite().to_vec());
+        Err(Trouble::Error { text }.beside(infinite.unwrap_or_default()))
     }
 }
 

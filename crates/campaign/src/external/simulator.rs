@@ -159,19 +159,18 @@ impl Simulator {
                 if said.is_some() {
                     sent(&line()?);
                 }
-                function.ask(inputs, outputs, |answer| came(&|| shown(answer)))
+                function.ask(inputs, outputs, |answered, failed| came(&|| shown(answered, failed)))
             }
         }
     }
 }
 
 /// What a function returned, in the words of a process.
-fn shown(answer: &Result<Outputs, String>) -> String {
-    match answer {
-        Ok(outputs) => {
-            let outputs = outputs.iter().map(|(name, number)| format!("{name:?}:{number:?}"));
-            format!("{{\"outputs\":{{{}}}}}", outputs.collect::<Vec<_>>().join(","))
-        }
-        Err(text) => format!("{{\"error\":{text:?}}}"),
-    }
+fn shown(outputs: &Outputs, failed: Option<&str>) -> String {
+    let numbers = outputs.iter().map(|(name, number)| format!("{name:?}:{number:?}"));
+    let numbers = format!("\"outputs\":{{{}}}", numbers.collect::<Vec<_>>().join(","));
+    let error = failed.map(|text| format!("\"error\":{text:?}"));
+    // Of a run that failed, the outputs are told that it has nevertheless.
+    let numbers = (error.is_none() || !outputs.is_empty()).then_some(numbers);
+    format!("{{{}}}", numbers.into_iter().chain(error).collect::<Vec<_>>().join(","))
 }

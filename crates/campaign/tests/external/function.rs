@@ -110,6 +110,37 @@ proptest! {
     }
 }
 
+proptest! {
+    /// Whatever outputs a function returns with a text that says why the run failed: the run fails for that, and has those that are
+    /// infinite, also where it is done alone.
+    #[test]
+    fn a_failed_run_has_what_is_infinite(
+        answered in prop::collection::vec(
+            (prop::sample::select(vec!["y", "seed", "other"]), prop::sample::select(vec![1.5, f64::NAN, f64::INFINITY, f64::NEG_INFINITY])),
+            0..4,
+        ),
+    ) {
+        let own = answered.clone();
+        let partly = SimulatorFunction::partly(move |_: &RunInputs<'_>| {
+            let outputs = own.iter().map(|(name, number)| ((*name).to_owned(), *number));
+            (outputs.collect(), Some("diverged".to_owned()))
+        });
+        let simulator = Simulator::function(partly);
+        let told = simulation(&simulator, BTreeSet::new(), 0).replay(0);
+        let table = table(&simulator, &BTreeSet::new(), 2, 1);
+        prop_assert_eq!(table.failures().count(), 2);
+        prop_assert!(table.failures().all(|(_, failure)| failure.message().contains("diverged")));
+        for (place, name) in ["y", "seed"].into_iter().enumerate() {
+            let mut infinite = answered.iter().filter(|(other, x)| *other == name && x.is_infinite());
+            let first = infinite.next().map(|(_, number)| *number);
+            prop_assert_eq!(table.numbers(name).unwrap().get(0), first);
+            prop_assert_eq!(told.infinite.get(place).copied().flatten(), first);
+        }
+        let answer = told.answer.unwrap();
+        prop_assert!(answer.contains("\"error\":\"diverged\"") && answer.contains("outputs") != answered.is_empty(), "{}", answer);
+    }
+}
+
 /// A run alone is sent what a process is sent, and what it answers is told in the same form.
 #[test]
 fn a_run_alone_is_told() {

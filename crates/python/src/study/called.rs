@@ -3,9 +3,9 @@
 use gyradius_campaign::{Outputs, RunInputs, SimulatorFunction};
 use pyo3::{
     Bound, Py, PyAny, PyErr, PyResult, Python,
-    exceptions::PyException,
+    exceptions::{PyException, PyOverflowError},
     types::{
-        PyAnyMethods, PyDict, PyDictMethods, PyInt, PyListMethods, PyMapping, PyMappingMethods,
+        PyAnyMethods, PyDict, PyDictMethods, PyListMethods, PyMapping, PyMappingMethods,
         PyTypeMethods,
     },
 };
@@ -33,13 +33,14 @@ impl Called {
     /// As a simulator calls it.
     pub(super) fn function(&self) -> SimulatorFunction {
         let called = self.clone();
-        SimulatorFunction::new(move |inputs| {
+        SimulatorFunction::partly(move |inputs| {
             if called.stop.load(Ordering::Relaxed) {
-                return Err("stopped".to_owned());
+                return (Outputs::new(), Some("stopped".to_owned()));
             }
             Python::attach(|py| {
-                let outputs = called.call(py, inputs);
-                outputs.map_err(|error| called.told(py, error))
+                let mut outputs = Outputs::new();
+                let failed = called.call(py, inputs, &mut outputs).err();
+                (outputs, failed.map(|error| called.told(py, error)))
             })
         })
     }
@@ -49,7 +50,8 @@ impl Called {
         self.interrupt.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 
-    fn call(&self, py: Python<'_>, run: &RunInputs<'_>) -> PyResult<Outputs> {
+    /// Adds what is answered to the outputs; whatever else is wrong with the answer, those that are numbers.
+    fn call(&self, py: Python<'_>, run: &RunInputs<'_>, outputs: &mut Outputs) -> PyResult<()> {
         let inputs = PyDict::new(py);
         run.inputs().try_for_each(|(name, number)| inputs.set_item(name, number))?;
         let about = PyDict::new(py);
@@ -64,7 +66,16 @@ impl Called {
                 "the simulation returned {found}: it must return a dictionary of the outputs"
             ))
         })?;
-        answer.items()?.iter().map(|item| output(&item)).collect()
+        let mut wrong = None;
+        for item in answer.items()?.iter() {
+            match output(&item) {
+                Ok(output) => outputs.push(output),
+                Err(error) => {
+                    wrong.get_or_insert(error);
+                }
+            }
+        }
+        wrong.map_or(Ok(()), Err)
     }
 
     /// Why a run failed, in the words of an exception.
@@ -93,17 +104,23 @@ fn output(item: &Bound<'_, PyAny>) -> PyResult<(String, f64)> {
     let kind = value.getattr("dtype").and_then(|dtype| dtype.getattr("kind"));
     let is_real =
         kind.and_then(|kind| kind.extract::<char>()).map_or(true, |kind| REAL.contains(&kind));
-    let number = is_real.then(|| value.extract().ok()).flatten();
+    let number = if is_real { number(&value) } else { None };
     let number = number.ok_or_else(|| {
-        // A whole number of any length is a number too.
-        let problem = if value.is_instance_of::<PyInt>() {
-            "a number that a float can hold"
-        } else {
-            "a number"
-        };
-        wrong(format!("the output `{name}` is {}: it must be {problem}", type_name(&value)))
+        wrong(format!("the output `{name}` is {}: it must be a number", type_name(&value)))
     })?;
     Ok((name, number))
+}
+
+/// The number that a value is. What no float can hold, as a long whole number, is infinite, as it is in the JSON of a command.
+fn number(value: &Bound<'_, PyAny>) -> Option<f64> {
+    value.extract().map_or_else(
+        |error: PyErr| {
+            let is_too_large = error.is_instance_of::<PyOverflowError>(value.py());
+            let is_negative = is_too_large.then(|| value.lt(0).ok()).flatten()?;
+            Some(if is_negative { f64::NEG_INFINITY } else { f64::INFINITY })
+        },
+        Some,
+    )
 }
 
 fn type_name(value: &Bound<'_, PyAny>) -> String {
