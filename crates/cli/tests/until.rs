@@ -118,13 +118,17 @@ fn what_is_there_stays() {
     let report = fs::read_to_string(scratch.path("more/report.md")).unwrap();
     assert!(
         report.contains(
-            "1234 runs a model were there already, more than the rule would have asked for"
+            "The first look that counts is at 1234 runs of each model, as the scenario says"
         ),
         "{report}"
     );
     scratch.done(&["study", "--scenario", "more/scenario.toml", "--out", "fresh"], 0);
     let numbers = |folder: &str| summary(&scratch.path(folder))["models"].clone();
     assert_eq!(numbers("fresh"), numbers("more"));
+    // The greatest number of runs is the last look, so that none is later.
+    let fewer = ["study", "--scenario", "more/scenario.toml", "--out", "fewer", "--runs", "900"];
+    let said = scratch.done(&fewer, 0);
+    assert!(said.contains("The first look that counts is at 900 runs of each model"), "{said}");
     let few =
         ["study", "--scenario", "all.toml", "--runs", "900", "--until", "decided", "--out", "more"];
     let said = scratch.done(&few, 2);

@@ -58,10 +58,11 @@ impl Ended {
 impl fmt::Display for Ended {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { until, runs, looks, enough, is_interrupted } = self;
-        if let Some(there) = until.first_look() {
+        if let Some(first) = until.first_look() {
             write!(
                 f,
-                "{there} runs a model were there already, more than the rule would have asked for: the first look that counts was at all of them. "
+                "The first look that counts is at {first} runs of each model, as the scenario says, in which this is filled in where runs up to that \
+                 number were there already and the rule would have asked for fewer. "
             )?;
         }
         let (rule, most) = (until.rule(), until.most_runs());

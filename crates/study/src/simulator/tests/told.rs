@@ -228,7 +228,7 @@ fn looks_before_failed_runs_were_done_again_are_not_denied() {
             assert!(after.runs >= before.runs && !page.contains("before the rule was asked"));
             let first = after.until.first_look();
             let said = format!(
-                "{} runs a model were there already, more than the rule would have asked for: the first look that counts was at all of them",
+                "The first look that counts is at {} runs of each model, as the scenario says",
                 before.runs
             );
             assert_eq!(page.contains(&said), first.is_some(), "{page}");
