@@ -40,8 +40,9 @@ fn check<C: Subject>(scenario: &C, columns: &[Column]) -> Result<(), ScenarioErr
         let problem = format!("{count} of them: there must be at most {MOST}");
         return Err(ScenarioError::field("requirements", problem));
     }
+    let known = |quantity| known(scenario, quantity, columns);
     if let Some(quantity) = scenario.until().and_then(|until| until.rule().quantity()) {
-        known(quantity, columns).map_err(|problem| ScenarioError::field("until.rule", problem))?;
+        known(quantity).map_err(|problem| ScenarioError::field("until.rule", problem))?;
     }
     for (i, requirement) in scenario.requirements().iter().enumerate() {
         let refused = |key: &str, problem: String| {
@@ -50,7 +51,7 @@ fn check<C: Subject>(scenario: &C, columns: &[Column]) -> Result<(), ScenarioErr
         let before = &scenario.requirements()[..i];
         name_problem(requirement, before)
             .map_or(Ok(()), |problem| Err(refused("name", problem)))?;
-        known(requirement.quantity(), columns).map_err(|problem| refused("quantity", problem))?;
+        known(requirement.quantity()).map_err(|problem| refused("quantity", problem))?;
         if let Some(model) = requirement.model().filter(|m| scenario.model_names().all(|n| n != *m))
         {
             let known: Vec<&str> = scenario.model_names().collect();
@@ -83,12 +84,17 @@ fn name_problem(requirement: &Requirement, before: &[Requirement]) -> Option<Str
     ))
 }
 
-/// That a quantity is of columns of numbers that the run tables have.
-pub(crate) fn known(quantity: &Measured, columns: &[Column]) -> Result<(), String> {
-    // Which run it is, is nothing that comes of it.
-    let places = Fleet::columns();
-    let is_place =
-        |name: &str| name == Column::RUN || places.iter().any(|column| column.name() == name);
+/// That a quantity is of columns of numbers that the run tables of a scenario have.
+pub(crate) fn known<C: Subject>(
+    scenario: &C,
+    quantity: &Measured,
+    columns: &[Column],
+) -> Result<(), String> {
+    // Which run it is, is nothing that comes of it. Without vehicles, columns may have their names.
+    let places = scenario.fleet().map(|_| Fleet::columns());
+    let is_place = |name: &str| {
+        name == Column::RUN || places.iter().flatten().any(|column| column.name() == name)
+    };
     let is_result = |column: &&Column| column.is_measured() && !is_place(column.name());
     for name in quantity.columns() {
         if !columns.iter().filter(is_result).any(|column| column.name() == name) {

@@ -53,7 +53,7 @@ impl<'a, C: Subject> EventRuns<'a, C> {
         let prepared = scenario.prepare(options.stop.as_ref())?;
         let plain = scenario.drawing(&prepared, at, Drawing::Plain)?;
         let columns = Table::new(model, 0, plain.columns()).map_err(CampaignError::from)?;
-        known(event.quantity(), columns.columns())
+        known(scenario, event.quantity(), columns.columns())
             .map_err(|problem| ScenarioError::field("event", problem))?;
         let groups = plain.groups().clone();
         drop(plain);

@@ -7,6 +7,7 @@ mod function;
 mod goes_on;
 mod interrupted;
 mod joint;
+mod judged;
 mod kept;
 mod models;
 mod off_nominal;
