@@ -7,13 +7,20 @@ use crate::RELATIVE_TOLERANCE;
 
 /// Directions in which a hull is looked at.
 const DIRECTIONS: usize = 400;
-/// What a hull that is flat to this share of its size is stretched by at most.
+/// A hull counts as wide as this share of its length at least.
 const FLAT: f64 = 1e-6;
 /// Of how many points all corners of the hull are found. Of more, those that are seen from the directions are enough: what
 /// has hundreds of them is round.
 const ALL: usize = 400;
 /// Planes that bound a way out, at most; a few do.
 const CUTS: usize = 60;
+
+/// Axes of a set of points, as columns, and how wide it is along each, in its sizes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Widths {
+    pub(super) axes: Matrix3<f64>,
+    pub(super) along: Vector3<f64>,
+}
 
 /// The convex hull of points.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +32,7 @@ pub(super) struct Hull {
     /// Directions, and how far the points reach against and along each.
     reach: Vec<(Vector3<f64>, [f64; 2])>,
     size: f64,
+    wide: Widths,
 }
 
 impl Hull {
@@ -33,11 +41,12 @@ impl Hull {
     pub(super) fn new(points: Vec<Vector3<f64>>) -> Result<Self, RegionError> {
         let Some(&first) = points.first() else { return Err(RegionError::Empty) };
         let size = points.iter().map(|p| (p - first).norm()).fold(0.0, f64::max);
-        let stretch = stretch(&points, first, size);
+        let wide = Widths::of(&points, first, size);
         let mut outer = Vec::new();
         let mut reach = Vec::new();
         for direction in directions() {
-            let n = (stretch * direction).normalize();
+            let n =
+                (wide.axes * wide.axes.tr_mul(&direction).component_div(&wide.along)).normalize();
             let (mut low, mut high, mut far) = (f64::INFINITY, f64::NEG_INFINITY, 0);
             for (i, point) in points.iter().enumerate() {
                 let along = n.dot(point);
@@ -52,7 +61,7 @@ impl Hull {
         outer.sort_unstable();
         outer.dedup();
         let outer = outer.into_iter().map(|i| points[i]).collect();
-        let mut hull = Self { points, outer, reach, size };
+        let mut hull = Self { points, outer, reach, size, wide };
         if hull.points.len() <= ALL {
             hull.add_corners();
         }
@@ -65,6 +74,10 @@ impl Hull {
 
     pub(super) fn outer(&self) -> &[Vector3<f64>] {
         &self.outer
+    }
+
+    pub(super) fn widths(&self) -> &Widths {
+        &self.wide
     }
 
     /// No two points are farther apart than twice this.
@@ -93,18 +106,25 @@ impl Hull {
             let along = n.dot(point);
             along > high + slack || along < low - slack
         };
-        !self.reach.iter().any(is_beyond) && self.off(point).norm() <= DIGITS
+        !self.reach.iter().any(is_beyond) && self.parting(point).is_none()
     }
 
-    /// What parts a point from the hull, in sizes: r of four with r₀ + r·(q − x)/size ≤ 0 for every q in the hull, and r₀ = |r|²
-    /// ≥ 0; zero of a point in it.
-    fn off(&self, point: &Vector3<f64>) -> SVector<f64, 4> {
+    /// The plane that parts a point from the hull, none of a point in it: r₀ > 0 and r with r₀ + r·(q − x)/size ≤ 0 for every q in
+    /// the hull.
+    ///
+    /// Which weights of the points come nearest to x is asked of points as wide as long: of points that lie in a plane but for some last
+    /// digits, no others would tell what lies between them. How near that is, is asked in sizes.
+    fn parting(&self, point: &Vector3<f64>) -> Option<(f64, Vector3<f64>)> {
+        let Widths { axes, along } = &self.wide;
         let place = |x: &Vector3<f64>| {
-            let x = (x - point) / self.size;
+            let x = axes.tr_mul(&((x - point) / self.size)).component_div(along);
             SVector::<f64, 4>::new(1.0, x.x, x.y, x.z)
         };
         let columns: Vec<_> = self.outer.iter().map(place).collect();
-        non_negative::rest(&columns, &SVector::<f64, 4>::new(1.0, 0.0, 0.0, 0.0))
+        let rest = non_negative::rest(&columns, &SVector::<f64, 4>::new(1.0, 0.0, 0.0, 0.0));
+        let (first, own) = (rest[0], Vector3::new(rest[1], rest[2], rest[3]));
+        let is_off = libm::hypot(first, own.component_mul(along).norm()) > DIGITS;
+        is_off.then(|| (first, axes * own.component_div(along)))
     }
 
     /// How far from a point in it the hull ends in a direction: the plane that parts a point outside from it bounds the way,
@@ -112,11 +132,10 @@ impl Hull {
     pub(super) fn exit(&self, from: &Vector3<f64>, direction: &Vector3<f64>) -> f64 {
         let mut far = 2.0 * self.size;
         for _ in 0..CUTS {
-            let rest = self.off(&(from + direction * far));
-            if rest.norm() <= DIGITS {
+            let Some((first, along)) = self.parting(&(from + direction * far)) else {
                 return far;
-            }
-            let step = rest[0] * self.size / rest.fixed_rows::<3>(1).dot(direction);
+            };
+            let step = first * self.size / along.dot(direction);
             if !(step > 0.0 && step < far) {
                 break;
             }
@@ -158,20 +177,27 @@ impl Hull {
     }
 }
 
-/// What makes the points as wide as long: the inverse root of their second moments.
-fn stretch(points: &[Vector3<f64>], first: Vector3<f64>, size: f64) -> Matrix3<f64> {
-    if !(size > 0.0) {
-        return Matrix3::identity();
+impl Widths {
+    /// Of what is as wide as long.
+    pub(super) fn same() -> Self {
+        Self { axes: Matrix3::identity(), along: Vector3::from_element(1.0) }
     }
-    let shares = || points.iter().map(|point| (point - first) / size);
-    let count = points.len() as f64;
-    let mean = shares().sum::<Vector3<f64>>() / count;
-    let spread: Matrix3<f64> =
-        shares().map(|x| (x - mean) * (x - mean).transpose()).sum::<Matrix3<f64>>() / count;
-    let eigen = spread.symmetric_eigen();
-    let longest = eigen.eigenvalues.max();
-    let inverse = eigen.eigenvalues.map(|v| 1.0 / v.max(FLAT * FLAT * longest).sqrt());
-    eigen.eigenvectors * Matrix3::from_diagonal(&inverse) * eigen.eigenvectors.transpose()
+
+    /// The roots of the second moments of points.
+    fn of(points: &[Vector3<f64>], first: Vector3<f64>, size: f64) -> Self {
+        if !(size > 0.0) {
+            return Self::same();
+        }
+        let shares = || points.iter().map(|point| (point - first) / size);
+        let count = points.len() as f64;
+        let mean = shares().sum::<Vector3<f64>>() / count;
+        let spread: Matrix3<f64> =
+            shares().map(|x| (x - mean) * (x - mean).transpose()).sum::<Matrix3<f64>>() / count;
+        let eigen = spread.symmetric_eigen();
+        let longest = eigen.eigenvalues.max();
+        let along = eigen.eigenvalues.map(|v| v.max(FLAT * FLAT * longest).sqrt());
+        Self { axes: eigen.eigenvectors, along }
+    }
 }
 
 /// Directions all over the sphere, on a spiral, and the axes.

@@ -8,7 +8,7 @@ mod hull;
 mod non_negative;
 
 pub use error::RegionError;
-use hull::Hull;
+use hull::{Hull, Widths};
 use nalgebra::{Isometry3, Matrix3, Quaternion, SVector, Translation3, UnitQuaternion, Vector3};
 
 use crate::mass_properties::check_vector;
@@ -194,10 +194,10 @@ impl Region {
                 };
                 let points = lattice().map(|unit| unit.component_mul(half_sides));
                 let own = local.on_own_axes(inside, exit);
-                local.decide(points.chain(own), half_sides.norm())
+                local.decide(points.chain(own), half_sides.norm(), &Widths::same())
             }
             Kind::Hull(hull) => {
-                let (outer, size) = (hull.outer(), hull.size());
+                let (outer, size, widths) = (hull.outer(), hull.size(), hull.widths());
                 let local = Local::of(body, &Isometry3::identity());
                 if hull.room(&local.centre, &local.axes, &local.radii) < -RELATIVE_TOLERANCE {
                     return Containment::Impossible;
@@ -218,14 +218,14 @@ impl Region {
                 let middles = (0..n).flat_map(|i| (0..i).map(move |j| (i, j))).step_by(stride);
                 let middles = middles.map(|(i, j)| (outer[i] + outer[j]) * 0.5);
                 let corners: Vec<Vector3<f64>> = rays.chain(middles).collect();
-                if local.decide(corners.iter().copied(), size) == Containment::Possible {
+                if local.decide(corners.iter().copied(), size, widths) == Containment::Possible {
                     return Containment::Possible;
                 }
                 // A body with an extent in all directions needs none but means of what is known to be in the region.
                 let is_flat = local.radii.min() == 0.0;
                 let inside = |x: &Vector3<f64>| is_flat && hull.holds(x);
                 let own = local.on_own_axes(inside, |n| hull.exit(&local.centre, n));
-                local.decide(corners.into_iter().chain(own), size)
+                local.decide(corners.into_iter().chain(own), size, widths)
             }
         }
     }
@@ -377,21 +377,31 @@ impl Local {
         (0..8).map(corner).collect()
     }
 
-    /// Whether masses at some of these points have the mass properties, the size of the region being as given.
-    fn decide(&self, points: impl Iterator<Item = Vector3<f64>>, size: f64) -> Containment {
+    /// Whether masses at some of these points have the mass properties, the size and widths of the region being as given.
+    fn decide(
+        &self,
+        points: impl Iterator<Item = Vector3<f64>>,
+        size: f64,
+        widths: &Widths,
+    ) -> Containment {
         if !(size > 0.0) {
             // All at one point.
             let same = self.radii.amax() == 0.0;
             return if same { Containment::Possible } else { Containment::Undecided };
         }
+        // Each number counts by how wide the points are: of what is nearly flat, what is across it would else be lost beside the rest.
+        // Squares across it are small beside all rounding, and count once by the width, as the others do.
+        let Widths { axes, along: w } = widths;
+        let counts = pack(w, &Matrix3::from_fn(|i, j| w[i].min(w[j]))).map(|width| 1.0 / width);
         let moments = |x: Vector3<f64>| {
-            let x = (x - self.centre) / size;
-            let square = x * x.transpose();
-            pack(&Vector3::new(x.x, x.y, x.z), &square)
+            let x = axes.tr_mul(&((x - self.centre) / size));
+            pack(&x, &(x * x.transpose())).component_mul(&counts)
         };
         let columns: Vec<SVector<f64, 10>> = points.map(moments).collect();
-        let wanted = pack(&Vector3::zeros(), &(self.spread / (size * size)));
-        if non_negative::rest(&columns, &wanted).norm() <= DIGITS {
+        let spread = axes.tr_mul(&(self.spread / (size * size))) * axes;
+        let wanted = pack(&Vector3::zeros(), &spread).component_mul(&counts);
+        let rest = non_negative::rest(&columns, &wanted);
+        if rest.component_div(&counts).norm() <= DIGITS {
             Containment::Possible
         } else {
             Containment::Undecided

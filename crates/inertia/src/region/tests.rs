@@ -101,7 +101,7 @@ proptest! {
         };
         let own = scaled.on_own_axes(inside, exit);
         let places = places.map(|x| x.component_div(&sizes)).chain(own);
-        prop_assert_eq!(scaled.decide(places, 1.0), Containment::Possible);
+        prop_assert_eq!(scaled.decide(places, 1.0, &Widths::same()), Containment::Possible);
     }
 
     /// Matter in a region far from the origin, its surface among it, is never called impossible.
@@ -383,4 +383,44 @@ fn what_is_no_region_is_refused_by_name() {
     let long = UnitQuaternion::new_unchecked(Quaternion::new(2.0, 0.0, 0.0, 0.0));
     let by = Isometry3::from_parts(Vector3::zeros().into(), long);
     assert!(Region::ellipsoid([0.0; 3], [1.0; 3]).unwrap().transformed(&by).is_err());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// A hull of points that lie in a plane but for the last digits of their coordinates, as a file of single precision has them:
+    /// matter at the points is possible, at one place or at several, and outside of their outline it is not.
+    #[test]
+    fn points_that_are_nearly_in_a_plane_decide(
+        count in 3..30usize,
+        long in 0.1..1.0f64,
+        size in -3.0..3.0f64,
+        noise in -17.0..-2.0f64,
+        offs in prop::collection::vec(-1.0..1.0f64, 30),
+        shares in prop::collection::vec(0.0..1.0f64, 30),
+        pose in any_pose(),
+    ) {
+        let size = 10f64.powf(size);
+        let about = |i: usize| {
+            let (sin, cos) = (std::f64::consts::TAU * i as f64 / count as f64).sin_cos();
+            Vector3::new(cos, long * sin, 10f64.powf(noise) * offs[i])
+        };
+        let at = |x: Vector3<f64>| (pose.rotation * x + 0.1 * pose.translation.vector) * size;
+        let rim: Vec<Vector3<f64>> = (0..count).map(|i| at(about(i))).collect();
+        let region = Region::hull(&rim.iter().map(|x| (*x).into()).collect::<Vec<_>>()).unwrap();
+        let all = shares[..count].iter().sum::<f64>().max(1e-3);
+        let mean: Vector3<f64> = rim.iter().zip(&shares).map(|(x, share)| x * (share / all)).sum();
+        prop_assert_eq!(region.containment(&points(&[(2.0, mean)])), Containment::Possible);
+        let heavy = |(share, x): (&f64, &Vector3<f64>)| (share + 1e-3, *x);
+        let several: Masses = shares.iter().zip(&rim).map(heavy).collect();
+        prop_assert_eq!(region.containment(&points(&several)), Containment::Possible);
+        let middle = rim.iter().sum::<Vector3<f64>>() / count as f64;
+        for beyond in [1e-4, 0.1] {
+            let outside = rim[0] + (rim[0] - middle) * beyond;
+            let found = region.containment(&points(&[(2.0, outside)]));
+            prop_assert!(found != Containment::Possible, "{}", beyond);
+        }
+        let across = middle + pose.rotation * Vector3::z() * (size * (1e-4 + 2.0 * 10f64.powf(noise)));
+        prop_assert!(region.containment(&points(&[(2.0, across)])) != Containment::Possible);
+    }
 }
