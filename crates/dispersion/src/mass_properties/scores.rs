@@ -4,13 +4,14 @@ use nalgebra::DMatrix;
 use std::{cell::RefCell, collections::HashMap, rc::Rc, sync::LazyLock};
 
 use super::lognormal::Lognormals;
-use super::steps::{Over, Steps};
+use super::steps::{AtScore, Over, Steps};
 use crate::{Correlation, ScalarLaw};
 
 /// How many scalars a joint law has at most: mass, three of the centre, three of the shape.
 pub(super) const SCALARS: usize = 7;
 
-/// Where the logarithm of the lognormal part of a product varies by no more than this, all rules have ten digits of it.
+/// Where the logarithm of the lognormal part of a product varies by no more than this, all rules have three digits of it, and those of Gauss and
+/// Hermite ten.
 const NARROW: f64 = 4.0;
 /// The digits that a rule must have of it elsewhere.
 const DIGITS: f64 = 1e-3;
@@ -77,9 +78,16 @@ impl Nodes {
     fn new(weights: Vec<f64>, values: Vec<f64>) -> Self {
         Self { weights, values, monomials: RefCell::default(), pairs: RefCell::default() }
     }
+
+    /// Mean and variance of a function of the scalars, which are so many.
+    fn moments(&self, width: usize, f: impl Fn(&[f64]) -> f64) -> (f64, f64) {
+        let each = || self.weights.iter().zip(self.values.chunks_exact(width).map(&f));
+        let mean: f64 = each().map(|(weight, f)| weight * f).sum();
+        (mean, each().map(|(weight, f)| weight * (f - mean) * (f - mean)).sum())
+    }
 }
 
-impl<F: Fn(f64) -> f64> Scores<'_, F> {
+impl<'a, F: Fn(f64) -> f64> Scores<'a, F> {
     /// E f and Cov(f, g); not numbers where a rule does not resolve lognormal scalars, which are so wide and correlated with
     /// scalars of other laws.
     ///
@@ -190,11 +198,63 @@ impl<F: Fn(f64) -> f64> Scores<'_, F> {
         })
     }
 
-    /// Weights and values of the scalars of a block.
+    /// Weights and values of the scalars of a block, by the rules that have the own moments of all scalars, or have them more nearly.
+    fn nodes(&self, block: &[usize]) -> Nodes {
+        let own = |law: &'a ScalarLaw| -> AtScore<'a> { Box::new(|z| law.at_score(z)) };
+        let smooth = self.nodes_by(&RULES, own, block);
+        let miss = self.miss(&smooth, block);
+        if miss <= DIGITS {
+            return smooth;
+        }
+        let close = self.nodes_by(&CLOSE, tabulated, block);
+        let best = if self.miss(&close, block) < miss { close } else { smooth };
+        self.with_own_moments(best, block)
+    }
+
+    /// The largest relative error, at the nodes, of the variance of a scalar and of its square, and of the means in deviations, of
+    /// scalars of which a rule is taken and nothing is known otherwise.
+    fn miss(&self, nodes: &Nodes, block: &[usize]) -> f64 {
+        let is_open = |law: &ScalarLaw| law.as_lognormal().is_none() && law.atoms().is_none();
+        let mut miss = 0.0_f64;
+        for (at, &scalar) in block.iter().enumerate() {
+            let law = self.laws[scalar];
+            let (square, square_variance) = law.square_moments();
+            let of =
+                [(1, law.mean(), law.deviation() * law.deviation()), (2, square, square_variance)];
+            for (power, mean, variance) in of.into_iter().filter(|of| is_open(law) && of.2 > 0.0) {
+                let (found, found_variance) = nodes.moments(block.len(), |x| x[at].powi(power));
+                let off = (found - mean) / variance.sqrt();
+                miss = miss.max(off.abs()).max((found_variance / variance - 1.0).abs());
+            }
+        }
+        miss
+    }
+
+    /// The same nodes, each scalar stretched to the mean and the deviation of its law.
+    fn with_own_moments(&self, mut nodes: Nodes, block: &[usize]) -> Nodes {
+        for (at, &scalar) in block.iter().enumerate() {
+            let (mean, deviation) = (self.laws[scalar].mean(), self.laws[scalar].deviation());
+            let (found, variance) = nodes.moments(block.len(), |x| x[at]);
+            let stretch = deviation / variance.sqrt();
+            if stretch.is_finite() {
+                for x in nodes.values.chunks_exact_mut(block.len()) {
+                    x[at] = mean + (x[at] - found) * stretch;
+                }
+            }
+        }
+        nodes
+    }
+
+    /// By these rules, each law being told by its values.
     ///
     /// Of normal scalars the monomials are polynomials, and with the scores of these last, which the others do not depend on, a few nodes are
     /// exact for them. The first scalar may be taken by its factor. Laws of single values stand before all others.
-    fn nodes(&self, block: &[usize]) -> Nodes {
+    fn nodes_by(
+        &self,
+        rules: &'static [LazyLock<Vec<(f64, f64)>>; 4],
+        value: impl Fn(&'a ScalarLaw) -> AtScore<'a>,
+        block: &[usize],
+    ) -> Nodes {
         let mut atoms: Vec<_> = block.iter().map(|&scalar| self.laws[scalar].atoms()).collect();
         if let [Some(atoms)] = atoms.as_slice() {
             return Nodes::new(
@@ -209,7 +269,7 @@ impl<F: Fn(f64) -> f64> Scores<'_, F> {
         let many = order.len();
         order.extend(last);
         let rule = |i: usize| -> &[(f64, f64)] {
-            if i < many { &RULES[block.len().min(RULES.len()) - 1] } else { &EXACT }
+            if i < many { &rules[block.len().min(rules.len()) - 1] } else { &EXACT }
         };
         let pairs: Vec<(usize, usize, f64)> = (0..block.len())
             .flat_map(|i| (0..i).map(move |j| (i, j)))
@@ -218,34 +278,12 @@ impl<F: Fn(f64) -> f64> Scores<'_, F> {
             .collect();
         // Of correlations a part is correlations, too.
         let correlation = Correlation::new(&pairs).unwrap_or_default();
-        if atoms.iter().any(Option::is_some) {
-            let over = order.iter().enumerate().map(|(i, &at)| match atoms[at].take() {
-                Some(atoms) => Over::Values(atoms),
-                None => Over::Rule(self.laws[block[at]], rule(i)),
-            });
-            let (weights, values) = Steps::new(&correlation, over.collect(), &order).nodes();
-            return Nodes::new(weights, values);
-        }
-        let count = (0..block.len()).map(|i| rule(i).len()).product();
-        let mut nodes =
-            Nodes::new(Vec::with_capacity(count), Vec::with_capacity(count * block.len()));
-        let mut scores = vec![0.0; block.len()];
-        for node in 0..count {
-            let (mut weight, mut rest) = (1.0, node);
-            for (i, score) in scores.iter_mut().enumerate() {
-                let rule = rule(i);
-                let (w, z) = rule[rest % rule.len()];
-                (weight, *score, rest) = (weight * w, z, rest / rule.len());
-            }
-            correlation.mix(&mut scores);
-            let start = nodes.values.len();
-            nodes.values.resize(start + block.len(), 0.0);
-            for (z, &at) in scores.iter().zip(&order) {
-                nodes.values[start + at] = self.laws[block[at]].at_score(*z);
-            }
-            nodes.weights.push(weight);
-        }
-        nodes
+        let over = order.iter().enumerate().map(|(i, &at)| match atoms[at].take() {
+            Some(atoms) => Over::Values(atoms),
+            None => Over::Rule(value(self.laws[block[at]]), rule(i)),
+        });
+        let (weights, values) = Steps::new(&correlation, over.collect(), &order).nodes();
+        Nodes::new(weights, values)
     }
 }
 
@@ -276,6 +314,15 @@ static RULES: [LazyLock<Vec<(f64, f64)>>; 4] = [
     LazyLock::new(|| hermite(14)),
 ];
 
+/// The same for laws that run up within a short way from one end to the other, as beta laws with small shapes do: of functions that are
+/// analytic the rule of evenly spaced nodes has more digits than any other of as many.
+static CLOSE: [LazyLock<Vec<(f64, f64)>>; 4] = [
+    LazyLock::new(panels),
+    LazyLock::new(|| even(0.03)),
+    LazyLock::new(|| even(0.16)),
+    LazyLock::new(|| even(0.43)),
+];
+
 /// For a normal scalar: up to degree 7 in each, and products of two monomials are of degree 4.
 static EXACT: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| hermite(4));
 
@@ -293,6 +340,27 @@ fn hermite(n: usize) -> Vec<(f64, f64)> {
     let eigen = matrix.symmetric_eigen();
     let weights = eigen.eigenvectors.row(0).iter().map(|v| v * v).collect::<Vec<_>>();
     weights.into_iter().zip(eigen.eigenvalues.iter().copied()).collect()
+}
+
+/// The values of a law of which many are asked, between those at scores that lie close to each other.
+fn tabulated(law: &ScalarLaw) -> AtScore<'_> {
+    const APART: f64 = 0.004;
+    const END: f64 = 12.0;
+    let last = (2.0 * END / APART) as usize;
+    let values: Vec<f64> = (0..=last).map(|i| law.at_score(i as f64 * APART - END)).collect();
+    Box::new(move |z| {
+        let at = ((z + END) / APART).clamp(0.0, last as f64);
+        let (below, above) = (values[at.floor() as usize], values[at.ceil() as usize]);
+        below + (above - below) * (at - at.floor())
+    })
+}
+
+/// Evenly spaced nodes on [−5.2, 5.2], beyond which a score lies twice in ten million times.
+fn even(apart: f64) -> Vec<(f64, f64)> {
+    let steps = (5.2 / apart).floor() as i32;
+    let density = |z: f64| libm::exp(-0.5 * z * z - crate::normal::LN_ROOT_TAU);
+    let scores = (-steps..=steps).map(|i| f64::from(i) * apart);
+    scores.map(|z| (apart * density(z), z)).collect()
 }
 
 /// A rule with many nodes on [−12, 12], the same in each of its panels.

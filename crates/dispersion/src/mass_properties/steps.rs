@@ -1,7 +1,7 @@
-//! Nodes for scalars with a Gaussian copula of which some have laws of single values: quadrature that breaks where a value becomes the
+//! Nodes for scalars with a Gaussian copula, of which some may have laws of single values: quadrature that breaks where a value becomes the
 //! next.
 
-use crate::{Correlation, ScalarLaw, normal, truncated_normal::share};
+use crate::{Correlation, normal, truncated_normal::share};
 
 /// Conditional scores beyond this have no weight that counts.
 const END: f64 = 8.5;
@@ -21,12 +21,15 @@ const RULE: [(f64, f64); 4] = [
 /// A value and its probability.
 type Atom = (f64, f64);
 
+/// The value at a score.
+pub(super) type AtScore<'a> = Box<dyn Fn(f64) -> f64 + 'a>;
+
 /// How a scalar is integrated over, given the scores of those before it.
 pub(super) enum Over<'a, V = Vec<Atom>> {
     /// A law of these values, in rising order.
     Values(V),
-    /// Weights and scores.
-    Rule(&'a ScalarLaw, &'a [(f64, f64)]),
+    /// A law by its values, weights and scores.
+    Rule(AtScore<'a>, &'a [(f64, f64)]),
 }
 
 /// A value from one score to another.
@@ -70,7 +73,7 @@ impl<'a> Steps<'a> {
         let (width, most) = PLANS.into_iter().find(|plan| count(*plan) <= MOST).unwrap_or(last);
         let stepped = |over| match over {
             Over::Values(atoms) => Over::Values(steps(&gathered(atoms, most))),
-            Over::Rule(law, rule) => Over::Rule(law, rule),
+            Over::Rule(value, rule) => Over::Rule(value, rule),
         };
         Self { factor, over: over.into_iter().map(stepped).collect(), places, width }
     }
@@ -107,9 +110,9 @@ impl<'a> Steps<'a> {
             scores.pop();
         };
         match over {
-            Over::Rule(law, rule) => {
+            Over::Rule(value, rule) => {
                 for (own, z) in *rule {
-                    go_on(weight * own, *z, law.at_score(mean + deviation * z));
+                    go_on(weight * own, *z, value(mean + deviation * z));
                 }
             }
             Over::Values(steps) => {

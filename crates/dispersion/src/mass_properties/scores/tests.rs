@@ -224,6 +224,96 @@ fn many_samples_go_with_other_scalars() {
     }
 }
 
+/// Beta laws that run up within a short way from one end to the other, or that are smooth: where they are hardly correlated, products
+/// have the moments of independent scalars; where a coefficient is anything, a pair has the integral over its scores, in which the second
+/// conditional one is taken in narrow panels, and among others the same.
+#[test]
+fn laws_with_short_ways_are_resolved() {
+    let rng = &mut ChaCha8Rng::seed_from_u64(9);
+    let one = Monomial::default();
+    let fine = even(0.01);
+    for case in 0..8 {
+        let mut law = || {
+            let [low, wide, a, b] = [(-1.0, 1.0), (0.3, 2.0), (-1.0, 1.0), (-1.0, 1.0)]
+                .map(|(least, most)| rng.random_range(least..most));
+            ScalarLaw::beta(low, low + wide, libm::pow(10.0, a), libm::pow(10.0, b)).unwrap()
+        };
+        let laws = [(); 4].map(|()| law());
+        let sign = |rng: &mut ChaCha8Rng| rng.random_range(-0.99..0.99_f64);
+        let signs = [(); 4].map(|()| sign(rng));
+        for size in [1e-5, 1.0] {
+            let tied = |i: usize, j: usize| size * signs[i] * signs[j];
+            let pairs: Vec<_> = (0..4)
+                .flat_map(|i| (0..i).map(move |j| (i, j)))
+                .map(|(i, j)| (i, j, tied(i, j)))
+                .collect();
+            let correlation = Correlation::new(&pairs).unwrap();
+            let scores = Scores {
+                laws: laws.iter().collect(),
+                correlation: &correlation,
+                factor: |x| x,
+                known: RefCell::default(),
+            };
+            // As they stand, in a pair, and beside the others.
+            let x = [0, 1, 2, 3].map(|s| one.times(s, 1));
+            let (first, second) = (&laws[0], &laws[1]);
+            let own = first.deviation() * second.deviation();
+            let slope = (1.0 - tied(0, 1) * tied(0, 1)).sqrt();
+            let at_first: Vec<_> =
+                fine.iter().map(|(w, z)| (*w, *z, first.at_score(*z) - first.mean())).collect();
+            let exact: f64 = if size < 1.0 {
+                0.0
+            } else {
+                // E x₂ given z₁ on a grid as fine as z₁ itself is.
+                at_first
+                    .iter()
+                    .step_by(8)
+                    .map(|(w, z, x)| {
+                        let beside = fine
+                            .iter()
+                            .step_by(8)
+                            .map(|(v, y)| 8.0 * v * second.at_score(tied(0, 1) * z + slope * y));
+                        8.0 * w * x * (beside.sum::<f64>() - second.mean())
+                    })
+                    .sum()
+            };
+            let (_, found) = scores.covariance(&x[0], &x[1]);
+            assert!(
+                (found - exact).abs() < 1e-3 * own,
+                "{case} {size}: {found} {exact} {own} {laws:?}"
+            );
+            let (_, beside) = scores.covariance(&x[0].times(2, 1), &x[1].times(3, 1));
+            let (together, _) = scores.covariance(&x[0].times(1, 1).times(2, 1), &x[3]);
+            if size < 1.0 {
+                // Squares of products are products of squares.
+                let three = x[0].times(1, 1).times(2, 1);
+                for f in [three, three.times(3, 1)] {
+                    let square: f64 = laws
+                        .iter()
+                        .enumerate()
+                        .filter(|(s, _)| f.involves(*s))
+                        .map(|(_, law)| law.square_moments().0)
+                        .product();
+                    let mean: f64 = laws
+                        .iter()
+                        .enumerate()
+                        .filter(|(s, _)| f.involves(*s))
+                        .map(|(_, law)| law.mean())
+                        .product();
+                    let (first, variance) = scores.covariance(&f, &f);
+                    let allowed = 1e-3 * square;
+                    assert!(
+                        (variance - (square - mean * mean)).abs() < allowed,
+                        "{case}: {variance} {square} {mean} {laws:?}"
+                    );
+                    assert!((first - mean).abs() < 1e-3 * square.sqrt(), "{case}: {first} {mean}");
+                }
+            }
+            assert!(beside.is_finite() && together.is_finite());
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
