@@ -7,6 +7,10 @@ use super::{
     nodes::{Rule, Turns},
     square_moments::{Element, SquareMoments},
 };
+use crate::turns::FIXED;
+
+/// The six entries, in their order.
+const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
 /// An entry is Σ_k K_k M_k with forms M of the axes: the mean and the covariance of M for each entry.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +23,21 @@ impl Forms {
     /// About axes that stay where they are.
     pub(super) fn still(attitude: &UnitQuaternion<f64>) -> Self {
         Self { mean: forms(attitude), covariance: [Matrix3::zeros(); 6] }
+    }
+
+    /// What axes that nothing moves add, since a law holds them no closer than [`FIXED`], to first order: no law has less.
+    pub(super) fn held(attitude: &UnitQuaternion<f64>) -> Self {
+        let r = attitude.to_rotation_matrix();
+        let of_entry = |(a, b)| -> Matrix3<f64> {
+            let about = |j: usize| {
+                let (m, n) = ((j + 1) % 3, (j + 2) % 3);
+                let moved = FIXED * (r[(m, a)] * r[(n, b)] + r[(n, a)] * r[(m, b)]);
+                let apart = Vector3::ith(m, moved) - Vector3::ith(n, moved);
+                apart * apart.transpose()
+            };
+            (0..3).map(about).sum()
+        };
+        Self { mean: [Vector3::zeros(); 6], covariance: ENTRIES.map(of_entry) }
     }
 
     /// About axes that turn: what is summed is what the forms are more than about the mean, so that small covariances keep their
@@ -36,8 +55,7 @@ impl Forms {
         });
         let first = forms(&turns.mean);
         let (mut mean, mut covariance) = (first, [Matrix3::zeros(); 6]);
-        for (e, (a, b)) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].into_iter().enumerate()
-        {
+        for (e, (a, b)) in ENTRIES.into_iter().enumerate() {
             let products = elements.each_ref().map(|of_k| of_k[a].times(&of_k[b]));
             let against = products.each_ref().map(|product| moments.against(product));
             mean[e] -= Vector3::from(products.each_ref().map(|product| moments.mean(product)));

@@ -69,9 +69,6 @@ impl Body {
 
     /// What the axes do to the entries, to a percent of a deviation.
     pub(super) fn forms(&self, scatter: &Scatter) -> Forms {
-        if scatter.rotations.amax() == 0.0 {
-            return Forms::still(&self.attitude);
-        }
         Forms::over(&self.turns(scatter), Rule::QUICK)
     }
 

@@ -179,6 +179,15 @@ impl Unknowns<'_> {
         }
         let mut best = independent;
         best.0.x = self.expressed(&independent.0, 1e-12);
+        // Of several laws that do, the one that the moments have alone, if the turns can be beside it.
+        if self.task.moments.is_stated() && self.task.products != Asked::Nothing {
+            let alone = Task { products: Asked::Nothing, ..*self.task };
+            let mut beside = independent.0;
+            beside.at.scatter.roots = alone.search(self.open.contains(&SHARE)).scatter.roots;
+            let mut start = self.expressed(&beside, 1e-12);
+            start[TURNS..TURN_ANGLES].copy_from_slice(&again[TURNS..TURN_ANGLES]);
+            self.improve(&mut best, &[start]);
+        }
         self.improve(&mut best, &[again, guess]);
         if self.task.has_valleys() {
             self.improve_evenly(&mut best, &[again, guess]);

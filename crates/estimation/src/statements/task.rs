@@ -113,6 +113,7 @@ impl Task {
     pub(super) fn compare(&self, at: &Point) -> Vec<Compared> {
         let k = self.body.second_moments(&at.scatter);
         let (means, found) = (at.forms.means(&k), at.forms.variances(&k));
+        let held = Forms::held(&self.body.attitude).variances(&k);
         let still = Scatter { roots: Matrix3::zeros(), ..at.scatter };
         // Axes and roots that scatter for nothing but the mass centre are what it adds, and no ground to add it on.
         let by_axes = match (self.axes, self.products) {
@@ -168,6 +169,8 @@ impl Task {
                 let counts =
                     if is_beyond && self.products.is_stated() { MOMENTS_FIRST } else { counts };
                 let is_still = e < 3 && wanted == 0.0 && asked.is_stated();
+                // No law has less than axes that are held.
+                let wanted = wanted.max(held[e] * (1.0 + by_mass));
                 let least = if is_still { still.max(least) } else { least };
                 compared.push(Compared { entry: e, wanted, found, least, counts });
             }
