@@ -61,8 +61,8 @@ impl fmt::Display for Ended {
         if let Some(first) = until.first_look() {
             write!(
                 f,
-                "The first look that counts is at {first} runs of each model, as the scenario says, in which this is filled in where runs up to that \
-                 number were there already and the rule would have asked for fewer. "
+                "The first look that counts is at {first} runs of each model, as the scenario says: gyradius writes that into it where runs up to \
+                 that number were done before the rule began. "
             )?;
         }
         let (rule, most) = (until.rule(), until.most_runs());
