@@ -109,6 +109,15 @@ impl Task {
         (ZERO * self.trace).powi(2)
     }
 
+    /// What the axes do to the entries. Where none is asked for a product, axes that nothing moves do nothing.
+    pub(super) fn forms(&self, scatter: &Scatter) -> Forms {
+        if self.products == Asked::Nothing && scatter.rotations.amax() == 0.0 {
+            Forms::still(&self.body.attitude)
+        } else {
+            self.body.forms(scatter)
+        }
+    }
+
     /// What is asked of each entry at a point, and what it has there.
     pub(super) fn compare(&self, at: &Point) -> Vec<Compared> {
         let k = self.body.second_moments(&at.scatter);
@@ -169,9 +178,12 @@ impl Task {
                 let counts =
                     if is_beyond && self.products.is_stated() { MOMENTS_FIRST } else { counts };
                 let is_still = e < 3 && wanted == 0.0 && asked.is_stated();
-                // No law has less than axes that are held.
-                let wanted = wanted.max(held[e] * (1.0 + by_mass));
-                let least = if is_still { still.max(least) } else { least };
+                let (wanted, least) = if is_still {
+                    (wanted, still.max(least))
+                } else {
+                    // No law has less than axes that are held.
+                    (wanted.max(held[e] * (1.0 + by_mass)), least)
+                };
                 compared.push(Compared { entry: e, wanted, found, least, counts });
             }
         }

@@ -94,7 +94,7 @@ impl<'a> Unknowns<'a> {
 
     pub(super) fn trial(&self, x: Values) -> Trial {
         let scatter = self.scatter(&x);
-        let forms = self.task.body.forms(&scatter);
+        let forms = self.task.forms(&scatter);
         Trial { x, at: Point { scatter, forms, follows: x[SHARE] } }
     }
 
@@ -147,7 +147,7 @@ impl Problem for Unknowns<'_> {
         }
         trial.at.scatter = self.scatter(&trial.x);
         if trial.x[TURNS..SHARE] != near.x[TURNS..SHARE] {
-            trial.at.forms = self.task.body.forms(&trial.at.scatter);
+            trial.at.forms = self.task.forms(&trial.at.scatter);
         }
         trial.at.follows = trial.x[SHARE];
         trial
