@@ -287,7 +287,7 @@ impl<T> List<T> {
             if let Some(still) = members.iter().find(|i| !(numbers[**i].law.deviation() > 0.0)) {
                 let Number { column, given, .. } = numbers[*still];
                 let problem = format!(
-                    "{column:?} does not vary: all values of {given} are the same. Give it another law, or leave the name away here"
+                    "{column:?} does not vary: all values of {given} are the same, as with a sigma of zero. Give it another law, or leave the name away here"
                 );
                 return Err(ScenarioError::field(format!("{field}.between"), problem));
             }

@@ -35,7 +35,7 @@ fn refusals_name_their_key() {
         "x", | | correlations[1].between
         "x", | "y", | correlations[1].between
         -0.8 | -1.8 | correlations[1].coefficient
-        sigma = 0.1 | sigma = 0.0 | correlations[1].between: "z" does not vary: all values of quantities[2].law are the same. Give it another law, or leave
+        sigma = 0.1 | sigma = 0.0 | correlations[1].between: "z" does not vary: all values of quantities[2].law are the same, as with a sigma of zero. Give it another law, or leave
         "#,
     ) {
         assert!(tied.contains(&from), "{from}");
