@@ -20,7 +20,7 @@ mod warnings;
 use gyradius_inertia::Inertia;
 
 use diagnosis::{Context, Outcome};
-use scatter::Body;
+use scatter::{Body, Scatter};
 use task::{Asked, Task};
 
 pub use amount::{AmountProblem, StatedAmount, StatedAmountError};
@@ -184,7 +184,8 @@ impl Stated {
     fn task(&self, body: Body, nominal: &Inertia, mass: Option<f64>) -> Task {
         // Where the mass centre alone turns the axes, it adds no less than they scatter where they are held.
         let only_held = self.axes.is_none() && self.products.is_none();
-        let least = if only_held { body.held_variances() } else { [0.0; 6] };
+        let held = body.held_variances(&body.second_moments(&Scatter::default()));
+        let least = if only_held { held } else { [0.0; 6] };
         let asked = |stated: Option<[f64; 3]>, first: usize, spoken: bool| match stated {
             Some(deviations) => Asked::Stated(deviations),
             None => match self.centre {

@@ -33,7 +33,7 @@ pub(super) struct Body {
 }
 
 /// Covariances of Gaussian roots in kg·m², and of rotations about the principal axes in rad².
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Scatter {
     #[cfg_attr(feature = "serde", serde(rename = "root_covariance_kg_m2"))]
@@ -72,10 +72,9 @@ impl Body {
         Forms::over(&self.turns(scatter), Rule::QUICK)
     }
 
-    /// Variances of the entries of a body that is held still: the law of the axes holds them no closer.
-    pub(super) fn held_variances(&self) -> [f64; 6] {
-        let held = Scatter { roots: Matrix3::zeros(), rotations: Matrix3::zeros() };
-        Forms::over(&self.turns(&held), Rule::QUICK).variances(&self.second_moments(&held))
+    /// What axes that nothing moves add to the variances of the entries of bodies with these second moments: no law has less.
+    pub(super) fn held_variances(&self, k: &SecondMomentStatistics) -> [f64; 6] {
+        Forms::held(&self.attitude).variances(k)
     }
 
     /// Moments of the entries of the law that scatters so.

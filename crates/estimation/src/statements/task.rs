@@ -122,7 +122,7 @@ impl Task {
     pub(super) fn compare(&self, at: &Point) -> Vec<Compared> {
         let k = self.body.second_moments(&at.scatter);
         let (means, found) = (at.forms.means(&k), at.forms.variances(&k));
-        let held = Forms::held(&self.body.attitude).variances(&k);
+        let held = self.body.held_variances(&k);
         let still = Scatter { roots: Matrix3::zeros(), ..at.scatter };
         // Axes and roots that scatter for nothing but the mass centre are what it adds, and no ground to add it on.
         let by_axes = match (self.axes, self.products) {
