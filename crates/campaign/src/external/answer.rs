@@ -58,8 +58,7 @@ pub(super) fn read(answer: &[u8], run: u64, outputs: &[Column]) -> Result<Vec<f6
         (None, numbers, _) => (Trouble::OutputsOrError, numbers),
         (Some(wrong), numbers, _) => (wrong, numbers),
     };
-    let infinite = numbers.and_then(Result::err).map(|other| other.infinite().to_vec());
-    Err(trouble.beside(infinite.unwrap_or_default()))
+    Err(trouble.with_infinite_of(numbers.and_then(Result::err)))
 }
 
 impl<'a> Answer<'a> {

@@ -65,8 +65,7 @@ impl SimulatorFunction {
         told(&answered, failed.as_deref());
         let numbers = declared(answered, outputs, |number| *number, f64::to_string);
         let Some(text) = failed else { return numbers };
-        let infinite = numbers.err().map(|other| other.infinite().to_vec());
-        Err(Trouble::Error { text }.beside(infinite.unwrap_or_default()))
+        Err(Trouble::Error { text }.with_infinite_of(numbers.err()))
     }
 }
 

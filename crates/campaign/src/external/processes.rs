@@ -253,10 +253,7 @@ impl Processes {
         match ended {
             Ok(()) => answer(),
             // Nothing may leave out a run that came to an infinite number, whatever became of the process after that.
-            Err(failed @ Trouble::Status { .. }) => {
-                let other = answer().err();
-                Err(failed.beside(other.map_or_else(Vec::new, |other| other.infinite().to_vec())))
-            }
+            Err(failed @ Trouble::Status { .. }) => Err(failed.with_infinite_of(answer().err())),
             Err(other) => Err(other),
         }
     }
