@@ -143,7 +143,7 @@ fn has_square(text: &str) -> bool {
 /// The runs of letters and of digits.
 pub(crate) fn runs(text: &str) -> Vec<Run<'_>> {
     let mut runs = Vec::new();
-    let (mut rest, mut gap) = (text, 0);
+    let (mut rest, mut end_before) = (text, 0);
     while let Some(first) = rest.chars().next() {
         let is_of = |c: char| {
             if first.is_alphabetic() { c.is_alphabetic() } else { c.is_numeric() }
@@ -153,9 +153,10 @@ pub(crate) fn runs(text: &str) -> Vec<Run<'_>> {
         if end > 0 {
             let digits = after.len() - after.trim_start_matches(char::is_numeric).len();
             let is_capital = !run.contains(char::is_lowercase);
-            let gap = &text
-                [std::mem::replace(&mut gap, text.len() - after.len())..text.len() - rest.len()];
+            let start = text.len() - rest.len();
+            let gap = &text[end_before..start];
             runs.push(Run { text: run, gap, is_capital, is_squared: &after[..digits] == "2" });
+            end_before = start + run.len();
         }
         rest = after;
     }
