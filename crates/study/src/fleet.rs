@@ -154,14 +154,15 @@ fn again(table: &ForeignTable) -> Result<(), ForeignError> {
     let names: Vec<String> = iter::once(run).chain(apart).cloned().collect();
     // False if the column names no runs, as judging sees it, or vehicles and flights are no numbers: those are of another program.
     let each = |look: &mut dyn FnMut(u64, &[u64])| {
-        let (mut first, mut all_whole) = (0, true);
+        let (mut first, mut all_whole, mut numbers) = (0, true, Vec::with_capacity(names.len()));
         let read = table.scan_of_models(&[], &names, |columns, models| {
             for (row, model) in (0..).zip(models) {
-                let mut whole = columns.iter().map(|cells| cells[row].and_then(Column::run_named));
-                let run = whole.next().flatten();
-                all_whole &= run.is_some();
-                let numbers: Option<Vec<u64>> = iter::once(run).chain(whole).collect();
-                if let (None, Some(numbers)) = (model, numbers) {
+                // A table may have a million rows, which share the memory of one.
+                numbers.clear();
+                let whole = |cells: &Vec<Option<f64>>| cells[row].and_then(Column::run_named);
+                numbers.extend(columns.iter().map_while(whole));
+                all_whole &= !numbers.is_empty();
+                if model.is_none() && numbers.len() == columns.len() {
                     look(first + row as u64, &numbers);
                 }
             }
