@@ -56,12 +56,12 @@ impl LawFile {
         }
         let text = scenario_text(path)?;
         // TOML may begin with a byte order mark, and JSON, as it is read, may not.
-        let text = text.trim_start_matches('\u{feff}').to_owned();
+        let text = text.trim_start_matches('\u{feff}');
         let file = || path.display();
         let read = if text.trim_start().starts_with('{') {
-            of_json(&text).map(Some)
+            of_json(text).map(Some)
         } else {
-            let table = toml::from_str::<toml::Table>(&text).ok();
+            let table = toml::from_str::<toml::Table>(text).ok();
             if table
                 .as_ref()
                 .is_some_and(|table| table.get(NOMINAL).is_some_and(toml::Value::is_table))
@@ -73,7 +73,7 @@ impl LawFile {
                 );
                 return Err(ScenarioError::field(NOMINAL, problem).in_file(path));
             }
-            Ok(table.filter(is_of_laws).map(|_| text))
+            Ok(table.filter(is_of_laws).map(|_| text.to_owned()))
         };
         let read = read.and_then(|text| text.map(|text| Self::from_toml(&text)).transpose());
         read.map_err(|error| error.in_file(path))
