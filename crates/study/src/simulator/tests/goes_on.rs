@@ -2,21 +2,13 @@
 
 use gyradius_campaign::{RunInputs, SimulatorFunction};
 use proptest::prelude::*;
-use std::{
-    fs,
-    path::Path,
-    sync::{
-        Arc,
-        atomic::{AtomicBool, AtomicU64, Ordering},
-    },
-};
+use std::{fs, path::Path};
 
 use super::{
-    BODY, MODELS, SimulatorScenario, files, folder,
-    function::{COMMAND, FUNCTION},
-    scenario, uniform,
+    SimulatorScenario, files, folder,
+    interrupted::{interrupted, waiting},
 };
-use crate::{AnyScenario, CampaignError, Ended, Options, Rows, StudyError, put_together};
+use crate::{AnyScenario, Ended, Options, Rows, put_together};
 
 const FLIGHTS: u64 = 7;
 
@@ -29,26 +21,12 @@ enum Before {
     Shard,
 }
 
-/// Answers, and stops once so many runs were begun. The mean is known soon, and from run 400 on it is not any more.
-fn answer(stop: &Arc<AtomicBool>, after: u64) -> SimulatorFunction {
-    let (stop, calls) = (Arc::clone(stop), AtomicU64::new(0));
-    SimulatorFunction::new(move |run: &RunInputs<'_>| {
-        stop.fetch_or(calls.fetch_add(1, Ordering::Relaxed) + 1 >= after, Ordering::Relaxed);
+/// Answers. The mean is known soon, and from run 400 on it is not any more.
+fn answer() -> SimulatorFunction {
+    SimulatorFunction::new(|run: &RunInputs<'_>| {
         let x = run.input("x").ok_or("no x")?;
         Ok(vec![("y".to_owned(), if run.run() < 400 { x } else { 4.0 * x })])
     })
-}
-
-/// Does the runs on one thread until so many were begun, and is stopped then; whether it was.
-fn interrupted(waiting: &SimulatorScenario, out: &Path, after: u64) -> bool {
-    let stop = Arc::new(AtomicBool::new(false));
-    let waiting = waiting.clone().with_function(answer(&stop, after)).unwrap();
-    let options = Options { stop: Some(stop), threads: Some(1), ..Options::to(out.to_owned()) };
-    match waiting.study(&options, &|_| {}, &|_| {}) {
-        Ok(_) => false,
-        Err(StudyError::Campaign(CampaignError::Stopped)) => true,
-        Err(other) => panic!("{other}"),
-    }
 }
 
 fn ended(out: &Path) -> Ended {
@@ -71,18 +49,9 @@ proptest! {
         stops in prop::collection::vec((1_u64..1500, any::<bool>()), 0..4),
     ) {
         let folder = folder();
-        let waiting = |runs: u64, more: &str| {
-            let mut text = format!("{more}\n{}", uniform().replace(COMMAND, FUNCTION));
-            if models {
-                text += "\n[[bodies]]\nname = \"hub\"";
-                text += &(BODY.replace("DISPERSION", "mass_percent = 1.0") + MODELS);
-            }
-            let size = match vehicles {
-                true => format!("vehicles = {}\nflights = {FLIGHTS}", runs.div_ceil(FLIGHTS)),
-                false => format!("runs = {runs}"),
-            };
-            scenario(&text.replace("runs = 300", &size), folder.path())
-        };
+        let flights = vehicles.then_some(FLIGHTS);
+        let waiting = |runs: u64, keys: &str| waiting(folder.path(), models, (runs, flights), [keys, ""]);
+        let interrupted = |scenario: &SimulatorScenario, out: &Path, after: u64| interrupted(scenario, answer(), out, after);
         let rule = format!("mean(y) within {within}").parse().unwrap();
         let asked = waiting(3500, &format!("rows = \"{}\"", rows.name())).with_until(Some(rule), None).unwrap();
         let prepare = |out: &Path| match before {
@@ -90,7 +59,7 @@ proptest! {
             Before::Study => assert!(!interrupted(&waiting(there, ""), out, u64::MAX)),
             Before::Interrupted => drop(interrupted(&waiting(3500, ""), out, there)),
             Before::Shard => {
-                let shared = waiting(there, "").with_function(answer(&Arc::default(), u64::MAX));
+                let shared = waiting(there, "").with_function(answer());
                 let any = AnyScenario::Simulator(Box::new(shared.unwrap()));
                 any.run_shard(&Options::to(out), "2/2".parse().unwrap(), &|_| {}, &|_| {}).unwrap();
             }

@@ -21,38 +21,51 @@ use crate::{CampaignError, Options, Status, StudyError, put_together};
 /// Flights of a vehicle, where there are vehicles.
 const FLIGHTS: u64 = 5;
 
-/// A scenario of so many runs that waits for a function, of one model or of two, with vehicles or without.
-fn waiting(
+/// A scenario of so many runs that waits for a function, of one model or of two, with so many flights of each vehicle or without vehicles;
+/// with more keys, and more tables.
+pub(super) fn waiting(
     folder: &Path,
     models: bool,
-    vehicles: bool,
-    runs: u64,
-    more: &str,
+    (runs, flights): (u64, Option<u64>),
+    [keys, tables]: [&str; 2],
 ) -> SimulatorScenario {
     let mut text = uniform().replace(COMMAND, FUNCTION);
     if models {
         text += "\n[[bodies]]\nname = \"hub\"";
         text += &(BODY.replace("DISPERSION", "mass_percent = 1.0") + MODELS);
     }
-    let size = match vehicles {
-        true => format!("vehicles = {}\nflights = {FLIGHTS}", runs / FLIGHTS),
-        false => format!("runs = {runs}"),
+    let size = match flights {
+        Some(flights) => format!("vehicles = {}\nflights = {flights}", runs.div_ceil(flights)),
+        None => format!("runs = {runs}"),
     };
-    scenario(&(text.replace("runs = 300", &size) + more), folder)
+    let text = text.replace("runs = 300", &size);
+    scenario(&format!("{keys}\n{text}{tables}"), folder)
 }
 
-/// Does runs on one thread until so many were begun, and is stopped then.
-fn interrupt(waiting: &SimulatorScenario, out: &Path, after: u64) {
+/// Does runs with a function on one thread until so many were begun, and is stopped then; whether it was, or was done before.
+pub(super) fn interrupted(
+    waiting: &SimulatorScenario,
+    function: SimulatorFunction,
+    out: &Path,
+    after: u64,
+) -> bool {
     let (stop, calls) = (Arc::new(AtomicBool::new(false)), AtomicU64::new(0));
     let own = Arc::clone(&stop);
     let function = SimulatorFunction::new(move |run: &RunInputs<'_>| {
         own.fetch_or(calls.fetch_add(1, Ordering::Relaxed) + 1 >= after, Ordering::Relaxed);
-        answer().run(run)
+        function.run(run)
     });
     let options = Options { stop: Some(stop), threads: Some(1), ..Options::to(out.to_owned()) };
     let scenario = waiting.clone().with_function(function).unwrap();
-    let stopped = scenario.study(&options, &|_| {}, &|_| {}).unwrap_err();
-    assert!(matches!(stopped, StudyError::Campaign(CampaignError::Stopped)), "{stopped}");
+    match scenario.study(&options, &|_| {}, &|_| {}) {
+        Ok(_) => false,
+        Err(StudyError::Campaign(CampaignError::Stopped)) => true,
+        Err(other) => panic!("{other}"),
+    }
+}
+
+fn interrupt(waiting: &SimulatorScenario, out: &Path, after: u64) {
+    assert!(interrupted(waiting, answer(), out, after));
 }
 
 proptest! {
@@ -70,7 +83,8 @@ proptest! {
         let folder = folder();
         let out = folder.path().join("out");
         let until = format!("\n[until]\nrule = \"mean(y) within 0.00001\"\nlook_every = {}\n", look_every / FLIGHTS * FLIGHTS);
-        let waiting = waiting(folder.path(), models, vehicles, 3000, &until);
+        let flights = vehicles.then_some(FLIGHTS);
+        let waiting = waiting(folder.path(), models, (3000, flights), ["", &until]);
         interrupt(&waiting, &out, after);
         let Ok(status) = Status::read(&out) else {
             // No block was finished, and nothing is left.
@@ -104,8 +118,9 @@ proptest! {
         runs in prop::sample::select(vec![200_u64, 300, 400, 520, 900, 3000]),
     ) {
         let folder = folder();
+        let flights = vehicles.then_some(FLIGHTS);
         let given = |runs: u64| {
-            waiting(folder.path(), false, vehicles, runs, "").with_function(answer()).unwrap()
+            waiting(folder.path(), false, (runs, flights), ["", ""]).with_function(answer()).unwrap()
         };
         let out = folder.path().join("out");
         let follow = |report: bool| {
@@ -113,7 +128,7 @@ proptest! {
             if let Some(complete) = complete {
                 given(complete).study(&options, &|_| {}, &|_| {}).unwrap();
             }
-            interrupt(&waiting(folder.path(), false, vehicles, 3000, ""), &out, after);
+            interrupt(&waiting(folder.path(), false, (3000, flights), ["", ""]), &out, after);
             if report {
                 // There may be no block yet.
                 let _ = put_together(&out, &options, &|_| {});
