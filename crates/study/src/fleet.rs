@@ -196,9 +196,9 @@ fn again(table: &ForeignTable) -> Result<(), ForeignError> {
         .map(|(name, number)| format!("{} {number}", name.trim()))
         .collect();
     Err(table.refused(&format!(
-        "{} are both of {}: a run counts once. If a run has many rows, as in a time history, leave it one, such as that of its worst value; if \
-         one row is a copy, take it away; if each row is a run of its own, give it a number of its own in the column {run:?}, or give that \
-         column another name; and judge different models each in a file of its own",
+        "{} are both of {}: a run counts once. If a run has many rows, as in a time history, keep the one with its worst value. If one row is a copy, \
+         remove it. If each row is a run of its own, number the rows in the column {run:?}, or give that column another name. Judge \
+         different models each in a file of its own",
         at.join(" and "),
         named.join(", ")
     )))

@@ -44,8 +44,8 @@ enum NoRun {
     )]
     NoNumber { cell: String },
     #[error(
-        "{cell:?} stands above numbers, and no cell of its row is a number: a row of units or of more names is no run and must be left out of the \
-         table, and a run must have a number there, as the others have"
+        "{cell:?} stands above numbers, and no cell of its row is a number. A row of units or of more names is no run and must be left out of the \
+         table; a run without a number must have NaN there"
     )]
     Units { cell: String },
 }
