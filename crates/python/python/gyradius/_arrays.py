@@ -172,8 +172,9 @@ def names_of(value: Any) -> list[list[str]]:
     """The names of the columns of a table, of pandas, polars or Arrow, and of its rows, or of the numbers of one row, where they have names."""
     found = (getattr(value, names, None) for names in ("column_names", "columns", "index"))
     # A list has a method `index`, and the columns of some tables are their values.
-    given = (list(one) for one in found if not callable(one) and isinstance(one, Iterable))
-    return [named for named in given if all(isinstance(one, str) for one in named)]
+    named = (one for one in found if not callable(one) and isinstance(one, Iterable))
+    # Most rows have numbers, of which the first says so.
+    return [list(names) for names in named if all(isinstance(one, str) for one in names)]
 
 
 def together(*arrays: tuple[str, ArrayLike, tuple[int, ...]]) -> tuple[list[NDArray[np.float64]], tuple[int, ...]]:
