@@ -99,8 +99,10 @@ impl Trouble {
 
     /// The same, with the outputs that are infinite in an answer in which there is other trouble, if there is any.
     pub(super) fn with_infinite_of(self, other: Option<Self>) -> Self {
-        let infinite = other.as_ref().map_or(&[][..], Self::infinite);
-        self.beside(infinite.to_vec())
+        match other {
+            Some(Self::Beside { infinite, .. }) => self.beside(infinite),
+            Some(_) | None => self,
+        }
     }
 
     /// The declared outputs, in their order, that the run has although it failed: those that are infinite. Empty if it has none at all.
