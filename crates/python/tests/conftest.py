@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import signal
+
 import numpy as np
 import pytest
 from hypothesis import settings
@@ -12,6 +14,9 @@ import gyradius
 # The same cases on every run, and no limit of time: machines are shared.
 settings.register_profile("gyradius", deadline=None, derandomize=True, max_examples=60)
 settings.load_profile("gyradius")
+
+# What runs in the background inherits from some shells that it ignores interrupts, and so would the programs that are interrupted here.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def rotations(rng: np.random.Generator, count: int) -> NDArray[np.float64]:
