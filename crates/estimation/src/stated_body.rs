@@ -284,7 +284,7 @@ mod tests {
             let [a, b, c] = nominal.inertia().principal_axes().moments();
             let is_ball = trace > 0.0 && a.max(b).max(c) - a.min(b).min(c) < 1e-9 * trace;
             let unturned = said.axes.is_some() && said.moments.is_none() && is_ball;
-            prop_assert_eq!(says(StatementWarning::Ball), unturned);
+            prop_assert_eq!(says(StatementWarning::AxesWithoutEffect), unturned);
             let ([mass, centre @ ..], moments) = deviations(&law);
             let [percent, of_moments, _, metres] = sizes;
             let near = |x: f64, y: f64| (x - y).abs() <= 0.08 * y + 1e-12;

@@ -36,11 +36,15 @@ impl fmt::Display for FoldedRoot {
         write!(
             f,
             "{}: {:.1} % of the law of {} lie below zero. Only its square matters, so that these draws are those of its \
-             absolute value, whose mean and standard deviation are not the stated ones: a lognormal or truncated normal \
-             law stays above zero",
+             absolute value, whose mean and standard deviation are not the stated ones",
             self.body,
             100.0 * self.share,
             self.quantity
-        )
+        )?;
+        // No law that stays above zero has the mean 0, which is that of a plate.
+        if self.share < 0.5 {
+            f.write_str(": a lognormal or truncated normal law stays above zero")?;
+        }
+        Ok(())
     }
 }

@@ -31,9 +31,9 @@ const SHIFT: f64 = 0.01;
 pub(super) struct Context {
     pub(super) body: Body,
     pub(super) stated: Stated,
-    /// What comes out without a limit of the axes, where axes are stated and products fall short.
+    /// What comes out without a limit of the axes, where axes and products are stated.
     pub(super) unlimited: Option<Outcome>,
-    /// What the products do alone, where axes are stated as well, or moments are and products fall short.
+    /// What the products do alone, where moments are stated as well and products fall short.
     pub(super) alone: Option<Outcome>,
     /// Deviations that a mass centre would give entries beside everything else, kg·m².
     pub(super) with_centre: [Option<f64>; 6],
@@ -69,11 +69,11 @@ impl Context {
         }
         warnings.extend(centre_alone(model, stated));
         warnings.extend(self.centre_missed(model));
-        if let (Some(axes), Some(alone)) = (stated.axes, &self.alone) {
+        if let (Some(axes), Some(unlimited)) = (stated.axes, &self.unlimited) {
             let differ = |a: f64, b: f64| !((a - b).abs() <= 0.1 * a.max(b));
-            if (0..3).any(|j| differ(axes[j], alone.turns[j])) {
-                let products = alone.turns;
-                warnings.push(StatementWarning::AxesAndProducts { axes, products });
+            if (0..3).any(|j| differ(axes[j], unlimited.turns[j])) {
+                let (products, turns) = (unlimited.turns, model.turns());
+                warnings.push(StatementWarning::AxesAndProducts { axes, products, turns });
             }
         }
         for (axis, turn) in (1..).zip(model.turns()) {
@@ -202,15 +202,19 @@ fn said_nothing_of(model: &StatedModel, stated: &Stated) -> Vec<StatementWarning
     warnings
 }
 
-/// Turns change nothing where all moments are equal, and stay so.
+/// A turn changes nothing where the two moments that it mixes are equal, and stay so: all three of a ball, and one of a body of revolution.
 fn axes_without_effect(model: &StatedModel, stated: &Stated) -> Option<StatementWarning> {
-    let turns = stated.axes?.iter().any(|turn| *turn > 0.0);
-    let [a, b, c] = model.nominal().second_moments().values();
+    let axes = stated.axes?;
+    let k = model.nominal().second_moments().values();
     let most = STILL * model.nominal().matrix().trace();
-    let equal = a.max(b).max(c) - a.min(b).min(c) <= most;
     let scatter = model.law_at_nominal_mass().roots().second_moment_statistics().variances();
-    let still = scatter.iter().all(|variance| variance.sqrt() <= most);
-    (turns && equal && still).then_some(StatementWarning::Ball)
+    let does_nothing = |axis: &usize| {
+        let [m, n] = [(axis + 1) % 3, (axis + 2) % 3];
+        (k[m] - k[n]).abs() <= most && [m, n].iter().all(|i| scatter[*i].sqrt() <= most)
+    };
+    let mut turned = (0..3).filter(|axis| axes[*axis] > 0.0).peekable();
+    (turned.peek().is_some() && turned.all(|axis| does_nothing(&axis)))
+        .then_some(StatementWarning::AxesWithoutEffect)
 }
 
 /// Where the inertia cannot wholly follow the mass, the moment that would be moved most beyond what is

@@ -52,7 +52,7 @@ const TRACES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
 /// * *Centre*: the mass centre adds what parallel axes add to those entries of which nothing is stated.
 ///   Of entries that are stated it is a part, and is only compared with them. So it is of stated axes, whose turns make the
 ///   products.
-/// * *Products* and *axes* both limit the axes: about each axis the tighter one holds.
+/// * *Products* and *axes* both limit the axes: the turns are never wider than stated, and within that they make the products what is stated.
 /// * *Moments* come before *products*: where both cannot be had, the moments are as stated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -145,9 +145,9 @@ impl Statements {
         let without = |asked: bool, task: Task| {
             asked.then(|| Outcome::new(&body, &task.solve()?)).transpose()
         };
-        let unlimited = without(limited && short, Task { axes: None, ..task })?;
+        let unlimited = without(limited, Task { axes: None, loose: true, ..task })?;
         let products = Task { moments: Asked::Nothing, axes: None, loose: true, ..task };
-        let alone = without(limited || (short && stated.moments.is_some()), products)?;
+        let alone = without(short && stated.moments.is_some(), products)?;
         let with_centre = solution.with_centre;
         let context = Context { body, stated, unlimited, alone, with_centre };
         let warnings = context.warnings(&model);

@@ -88,10 +88,19 @@ impl Compared {
         0.5 * libm::log((self.found + self.least) / (self.wanted + self.least))
     }
 
-    /// What that costs.
-    pub(super) fn cost(&self) -> f64 {
+    /// What that costs where all that is asked may be had: the farther from it, the more.
+    pub(super) fn even_cost(&self) -> f64 {
         let error = self.error();
         if error < 0.0 { SURER * error } else { error }
+    }
+
+    /// What that costs beside other errors. A product that falls short counts as [`SURER`] says where it is nearly what is stated, and never more than one
+    /// that is e times too large: one that the axes cannot move would make the others many times what is stated of them.
+    pub(super) fn cost(&self) -> f64 {
+        match (self.even_cost(), self.entry) {
+            (cost, 3..) if cost < 0.0 => libm::expm1(cost),
+            (cost, _) => cost,
+        }
     }
 }
 

@@ -155,8 +155,9 @@ impl Problem for Unknowns<'_> {
 
     fn residuals(&self, trial: &Trial) -> DVector<f64> {
         let compared = self.task.compare(&trial.at);
-        let most_counts = if self.evenly { 1.0 } else { f64::INFINITY };
-        let errors = compared.iter().map(|it| it.cost() * it.counts.min(most_counts));
+        let errors = compared.iter().map(|it| {
+            if self.evenly { it.even_cost() * it.counts.min(1.0) } else { it.cost() * it.counts }
+        });
         let most = most_turns(self.task);
         let costs = self.open.iter().map(|&i| match i {
             ROOTS..ROOTS_BESIDE => PULL * trial.x[i],

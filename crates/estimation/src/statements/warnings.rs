@@ -117,6 +117,12 @@ pub enum StatementWarning {
             serde(rename = "products_rad", deserialize_with = "crate::read::or_infinite")
         )]
         products: [f64; 3],
+        /// Those that come out, rad; infinite where they may be any.
+        #[cfg_attr(
+            feature = "serde",
+            serde(rename = "turns_rad", deserialize_with = "crate::read::or_infinite")
+        )]
+        turns: [f64; 3],
     },
     /// Two principal moments that differ by less than they scatter.
     EqualMoments {
@@ -125,8 +131,8 @@ pub enum StatementWarning {
     },
     /// Moments, products or axes are stated of a point, which has none.
     Point,
-    /// Axes are stated of a body whose moments are equal and do not scatter, so that no turn changes it.
-    Ball,
+    /// Axes are stated of a body that these turns do not change: the moments that they mix are equal and do not scatter.
+    AxesWithoutEffect,
     /// Nothing is said of the moments.
     FixedMoments,
     /// Nothing is said of the axes.
@@ -197,7 +203,7 @@ impl StatementWarning {
             Self::Correlated
             | Self::AxesAndProducts { .. }
             | Self::Point
-            | Self::Ball
+            | Self::AxesWithoutEffect
             | Self::FixedMoments
             | Self::FixedAxes => None,
         }
@@ -304,7 +310,7 @@ impl fmt::Display for StatementWarning {
                      bring it nearer beside the other entries"
                 )
             }
-            Self::AxesAndProducts { axes, products } => {
+            Self::AxesAndProducts { axes, products, turns } => {
                 f.write_str(
                     "axes and products disagree on the turns about principal axes 1, 2, 3: the axes \
                      allow",
@@ -312,18 +318,19 @@ impl fmt::Display for StatementWarning {
                 degrees(f, axes)?;
                 f.write_str(", the products")?;
                 degrees(f, products)?;
-                f.write_str(" (1σ): about each axis the tighter one is taken")
+                f.write_str(" (1σ); the model turns by")?;
+                degrees(f, turns)
             }
             Self::EqualMoments { axes: [a, b] } => write!(
                 f,
                 "principal moments {a} and {b} differ by less than they scatter: which way the nominal \
-                 body has these two axes means little, and the model keeps them there"
+                 body has these two axes means little"
             ),
             Self::Point => f.write_str(
                 "the inertia is zero, as that of a point: what is stated of moments, products and axes has no effect",
             ),
-            Self::Ball => f.write_str(
-                "the three principal moments are equal and do not scatter: what is stated of the axes has no effect",
+            Self::AxesWithoutEffect => f.write_str(
+                "the principal moments that these turns mix are equal and do not scatter: what is stated of the axes has no effect",
             ),
             Self::FixedMoments => {
                 f.write_str("nothing is said of the moments: the second moments do not scatter")

@@ -1,0 +1,54 @@
+//! Products that the turns of the axes cannot make as large as is stated, and turns that change nothing.
+
+use super::*;
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    /// A product of two moments that are nearly equal is out of reach, and the others are what is stated of them all the same, with and without a limit of
+    /// the axes.
+    #[test]
+    fn a_product_out_of_reach_spares_the_others(
+        third in prop_oneof![0.1..0.8_f64, 1.2..1.9_f64],
+        gap in prop_oneof![Just(0.0), (-4.0..-1.5_f64).prop_map(|power| libm::pow(10.0, power))],
+        size in (-4.0..-1.5_f64).prop_map(|power| libm::pow(10.0, power)),
+        degrees in prop::option::of(1.0..20.0_f64),
+        place in 0..3_usize,
+    ) {
+        let mut moments = [1.0, 1.0 + gap, third];
+        moments.rotate_right(place);
+        let axes = degrees.map(|degrees| AxesStatement::each([degrees; 3], 1.0).unwrap());
+        let products = Some(ProductsStatement::new([size; 3], 1.0).unwrap());
+        let statements = Statements { products, axes, ..Statements::default() };
+        let model = statements.model(&body(moments, [0.0; 3]), None).unwrap();
+        let implied = model.implied().deviations();
+        for (entry, [m, n]) in (3..).zip([[0, 1], [0, 2], [1, 2]]) {
+            let turn = size / (moments[m] - moments[n]).abs();
+            let limit = degrees.map_or(0.2, |degrees| degrees.to_radians().min(0.2));
+            let share = implied[entry] / size;
+            if turn < 0.8 * limit {
+                prop_assert!((share - 1.0).abs() < 0.05, "{:?} {}: {:?}", moments, size, implied);
+            }
+            prop_assert!(share < 1.25, "{:?} {}: {:?}", moments, size, implied);
+        }
+    }
+
+    /// Axes of which every stated turn mixes two equal moments that do not scatter are told to have no effect, and have none; others have one.
+    #[test]
+    fn turns_without_effect_are_told(
+        k in prop::array::uniform3(1..4_u8),
+        degrees in prop::array::uniform3(prop_oneof![Just(0.0), 0.5..20.0_f64]),
+    ) {
+        let nominal = Inertia::from_second_moments(
+            SecondMoments::new(k.map(f64::from)).unwrap(),
+            &UnitQuaternion::identity(),
+        )
+        .unwrap();
+        let axes = Some(AxesStatement::each(degrees, 1.0).unwrap());
+        let model = Statements { axes, ..Statements::default() }.model(&nominal, None).unwrap();
+        let told = model.warnings().contains(&StatementWarning::AxesWithoutEffect);
+        let moves = model.implied().deviations().into_iter().any(|deviation| deviation > 1e-4);
+        let turns = degrees.iter().any(|turn| *turn > 0.0);
+        prop_assert_eq!(told, turns && !moves, "{:?}", model.implied().deviations());
+    }
+}
