@@ -1,10 +1,13 @@
-//! Encodings of one byte a character that XML files declare.
+//! Encodings of one byte a character: those that XML files declare, and that of tables.
 
 /// An encoding of one byte a character that extends ASCII.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Encoding(&'static encoding_rs::Encoding);
 
 impl Encoding {
+    /// That of tables, which declare none: what spreadsheets write in the west, and in it Latin-1.
+    pub(crate) const OF_TABLES: Self = Self(encoding_rs::WINDOWS_1252);
+
     /// The encoding that an XML declaration at the beginning names, if it is one of these. Names are taken as browsers take them:
     /// what is called ASCII or ISO 8859-1 has the characters of Windows between.
     pub(crate) fn declared(body: &[u8]) -> Option<Self> {

@@ -27,7 +27,7 @@ fn is_between_words(before: &str, after: &str) -> bool {
     let is_skipped = |c: char| is_blank(c) || SIGNS.contains(&c);
     let end = before.trim_end_matches(is_skipped).chars().next_back();
     let start = after.trim_start_matches(is_skipped).chars().next();
-    let ends_a_word = |c: char| c.is_alphanumeric() || ")]}?\"".contains(c);
+    let ends_a_word = |c: char| c.is_alphanumeric() || ")]}\"".contains(c);
     let begins_a_word = |c: char| c.is_alphanumeric() || "([{".contains(c);
     // With a blank before it and none behind it, it belongs to what follows: `Ixy -kg m²`.
     let leans = before.ends_with(is_blank) && !after.starts_with(is_skipped);

@@ -37,8 +37,8 @@ impl Offsets {
 }
 
 impl Text {
-    /// Takes UTF-8, and of XML what declares an [`Encoding`]. Where `latin` allows it, any encoding that extends ASCII byte by byte: what
-    /// is not ASCII becomes a question mark, and stays what it is in a copy.
+    /// Takes UTF-8, and of XML what declares an [`Encoding`]. Where `latin` allows it, what is not UTF-8 is in
+    /// [that of tables](Encoding::OF_TABLES).
     pub(crate) fn new(bytes: &[u8], latin: bool) -> Result<Self, Refusal> {
         let mark = if bytes.starts_with(BOM) { BOM.len() } else { 0 };
         let body = &bytes[mark..];
@@ -52,20 +52,16 @@ impl Text {
         if latin && body.trim_ascii().contains(&b'\r') && !body.contains(&b'\n') {
             return Err(Refusal { line: Some(1), problem: FileProblem::CarriageReturns });
         }
-        let after_mark = Offsets { mark, more: Vec::new() };
         let (text, offsets) = match std::str::from_utf8(body) {
-            Ok(text) => (text.to_owned(), after_mark),
-            Err(_) if latin => {
-                let text = body.iter().map(|b| if b.is_ascii() { char::from(*b) } else { '?' });
-                (text.collect(), after_mark)
-            }
+            Ok(text) => (text.to_owned(), Offsets { mark, more: Vec::new() }),
             Err(error) => {
-                let text = Encoding::declared(body).map(|encoding| encoding.decode(body));
-                let text = text.ok_or_else(|| {
+                let of_tables = latin.then_some(Encoding::OF_TABLES);
+                let encoding = of_tables.or_else(|| Encoding::declared(body)).ok_or_else(|| {
                     let before = &body[..error.valid_up_to()];
                     let line = 1 + before.iter().filter(|b| **b == b'\n').count();
                     Refusal { line: Some(line), problem: FileProblem::NotUtf8 }
                 })?;
+                let text = encoding.decode(body);
                 let offsets = Offsets::of_narrow(mark, &text);
                 (text, offsets)
             }
@@ -158,7 +154,7 @@ mod tests {
         let refusal = Text::new(b"a\nb\xe9\n", false).unwrap_err();
         assert!(matches!(refusal.problem, FileProblem::NotUtf8));
         assert_eq!(refusal.line, Some(2));
-        assert_eq!(Text::new(b"m\xb2", true).unwrap().as_str(), "m?");
+        assert_eq!(Text::new(b"m\xb2", true).unwrap().as_str(), "m²");
         let declared = b"<?xml version='1.0' encoding='ISO-8859-1'?><r n='\xe9'/>";
         let text = Text::new(declared, false).unwrap();
         assert!(text.as_str().ends_with("n='é'/>"));

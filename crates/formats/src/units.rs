@@ -330,24 +330,9 @@ pub(crate) fn squeezed(text: &str) -> String {
 }
 
 /// A unit in small letters, with a blank for whatever stands between its parts: `kg·m²` becomes `kg m2`.
-/// In an encoding other than UTF-8, the question mark is what was a dot or a square.
 fn plain(text: &str) -> String {
     // A capital M is a million: Mg is a tonne, and no milligram.
     let text = text.replace("Mg", "t").to_lowercase().replace('²', "2");
-    let mut plain = String::with_capacity(text.len());
-    let mut rest = text.chars().peekable();
-    while let Some(c) = rest.next() {
-        let is_dot = c == '?' && rest.peek().is_some_and(|next| next.is_alphabetic());
-        match c {
-            _ if is_between(c) || is_dot => {
-                if !plain.is_empty() && !plain.ends_with(' ') {
-                    plain.push(' ');
-                }
-            }
-            '?' => plain.push('2'),
-            other => plain.push(other),
-        }
-    }
-    plain.truncate(plain.trim_end().len());
-    plain
+    let parts = text.split(is_between).filter(|part| !part.is_empty());
+    parts.collect::<Vec<_>>().join(" ")
 }

@@ -1,6 +1,6 @@
-//! Robots in encodings of one byte a character: they are read and copied as in UTF-8, with the names that they have there.
+//! Robots and tables in encodings of one byte a character: they are read and copied as in UTF-8, with the names that they have there.
 
-use gyradius_formats::{InertiaFile, Products, Remedy, RobotFile};
+use gyradius_formats::{InertiaFile, PartsTable, Products, Remedy, RobotFile, TenTable};
 use gyradius_inertia::{Inertia, MassProperties, SecondMoments};
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::{prelude::*, sample::select};
@@ -101,5 +101,73 @@ proptest! {
         });
         prop_assert!(plain != wrong.as_bytes());
         prop_assert_eq!(narrow, encoded(std::str::from_utf8(&plain).unwrap(), encoding));
+    }
+}
+
+/// Something of Latin-1, as it stands in units and in other texts.
+const MARKS: [&str; 12] = ["", "µ", "½", "²", "³", "·", "×", "é", "?", "\u{a0}", "±", "k"];
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    /// `µg` was read as g in Latin-1, whose µ was a mark like any other.
+    #[test]
+    fn tables_are_read_and_copied_as_in_utf_8(
+        marks in prop::array::uniform5(select(&MARKS[..])),
+        of_unit in prop::array::uniform5(any::<bool>()),
+        name in prop::collection::vec(0xA0_u8..=0xFF, 0..6),
+        moment in select(&["3", "9"][..]),
+    ) {
+        let [mass, inertia, between, square, title] = std::array::from_fn(|i| match (of_unit[i], i) {
+            (true, 2) => "·",
+            (true, 3) => "²",
+            (true, _) => "",
+            (false, _) => marks[i],
+        });
+        let name: String = name.into_iter().map(char::from).collect();
+        let text = format!(
+            "# é {title}\nname,mass [{mass}kg],cx,cy,cz,ixx [{inertia}kg{between}m{square}],iyy,izz,note\n\
+             {name},1,0,0,0,2,4,{moment},{title}\n"
+        );
+        let latin: Vec<u8> = text.chars().map(|c| u8::try_from(u32::from(c)).unwrap()).collect();
+        prop_assert!(std::str::from_utf8(&latin).is_err());
+        let [plain, narrow] = [text.clone().into_bytes(), latin.clone()].map(|bytes| {
+            let list = PartsTable::read(&bytes, None).map_err(|error| error.to_string());
+            let file = InertiaFile::parse(Path::new("a.csv"), bytes, Products::default());
+            (list, file.map_err(|error| error.to_string()))
+        });
+        prop_assert_eq!(&plain.0, &narrow.0, "{}", text);
+        let (Ok(plain), Ok(narrow)) = (&plain.1, &narrow.1) else {
+            prop_assert_eq!(plain.1.err(), narrow.1.err(), "{}", text);
+            return Ok(());
+        };
+        prop_assert_eq!(plain.bodies().len(), narrow.bodies().len());
+        for (one, other) in plain.bodies().iter().zip(narrow.bodies()) {
+            prop_assert_eq!((one.name(), one.mass_kg(), one.inertia()), (other.name(), other.mass_kg(), other.inertia()), "{}", text);
+        }
+        let [one, other] = [plain, narrow].map(|file| TenTable::of(file).map(|ten| format!("{:?}", ten.rows().first().map(|row| row.values()))));
+        prop_assert_eq!(one.map_err(|e| e.to_string()), other.map_err(|e| e.to_string()));
+        // What is repaired is the same in both, and the rest of the bytes stay.
+        let [plain, narrow] = [plain, narrow].map(|file| file.repaired(&[(0, Remedy::Nearest)]).map_err(|e| e.to_string()));
+        let plain = plain.map(|copy| String::from_utf8(copy).unwrap().chars().map(|c| u8::try_from(u32::from(c)).unwrap()).collect::<Vec<u8>>());
+        prop_assert_eq!(plain, narrow);
+    }
+}
+
+/// Nothing beside a dot, a blank and a square may stand in a unit of Latin-1.
+#[test]
+fn units_of_latin_1_hold_what_they_say() {
+    for byte in 0x80..=0xFF_u8 {
+        let read = |before: &[u8], unit: [&[u8]; 3]| {
+            let table =
+                [b"ixx [", before, unit[0], unit[1], unit[2], b"],iyy,izz\n2,2,2\n"].concat();
+            InertiaFile::parse(Path::new("a.csv"), table, Products::default()).is_ok()
+        };
+        let one = [byte];
+        // The blank, the dot and the cross.
+        let is_between = [0xA0, 0xB7, 0xD7].contains(&byte);
+        assert_eq!(read(b"", [b"kg", &one, b"m2"]), is_between, "{byte:x}");
+        assert_eq!(read(&one, [b"kg", b" ", b"m2"]), is_between, "{byte:x}");
+        assert_eq!(read(b"", [b"kg", b" m", &one]), byte == 0xB2, "{byte:x}");
     }
 }
