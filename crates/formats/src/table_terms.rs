@@ -41,7 +41,7 @@ impl TableTerms {
     pub(crate) fn are_units_in(&self, cell: &str, of: Option<Dimension>) -> bool {
         // Marks that divide units, and then those that may stand in one.
         const BETWEEN: [&[char]; 2] = [&[',', ';', '/', '&', '+'], &[' ']];
-        if !cell.contains(char::is_alphabetic) {
+        if says_nothing(cell) {
             return true;
         }
         let cell = &cell.replace(" and ", ", ");
@@ -80,6 +80,12 @@ impl TableTerms {
             columns.all(|column| is_same(column, si))
         }
     }
+}
+
+/// Whether a text is none but dashes, brackets and marks that part units, or the factor 1. Any other number would be a factor, or a count.
+fn says_nothing(text: &str) -> bool {
+    let is_mark = |c: char| c.is_whitespace() || "-–—|·•()[]".contains(c);
+    text.chars().all(is_mark) || text.trim().parse() == Ok(1.0)
 }
 
 /// Whether two units are one: `t mm2` and `g m2` are, to within the rounding of their products.

@@ -113,6 +113,47 @@ proptest! {
     }
 }
 
+/// Numbers other than one, and marks of feet and of percent, with which a unit of a column is another.
+const FACTORS: [&str; 13] =
+    ["10^-3", "1e-6", "0.001", "1000", "10³", "10⁻³", "½", "-1", "2", "0", "1,000", "%", "'"];
+
+proptest! {
+    /// `10^-3 kg·m²` was taken for kg·m².
+    #[test]
+    fn a_unit_with_a_factor_is_another(
+        columns in unit_of_each(),
+        (heading, of) in select(&HEADINGS[..]),
+        which in 0..3_usize,
+        factor in select(&FACTORS[..]),
+        form in select(&["F U", "F·U", "F × U", "U/F", "U / F", "U × F", "U*F", "U · F", "U, F", "U (F)", "F", "[F]"][..]),
+        is_in_units: bool,
+    ) {
+        let which = of.unwrap_or(which);
+        let unit = &columns[which].0;
+        let table = |factor: &str| {
+            let cell = form.replace('U', unit).replace('F', factor);
+            let [mass, length, inertia] = columns.each_ref().map(|(unit, _)| unit);
+            let (above, below) = if is_in_units { (cell.as_str(), "") } else { ("", cell.as_str()) };
+            format!(
+                "name,mass,cx,cy,cz,ixx,iyy,izz,\"{heading}\"\n,{mass},{length},{length},{length},{inertia},{inertia},{inertia},\"{above}\"\n\
+                 a,5,1,2,3,4,5,6,\"{below}\"\n"
+            )
+        };
+        let checked = |text: &str| {
+            let file = InertiaFile::parse(Path::new("t.csv"), text.as_bytes().to_vec(), Products::default());
+            file.is_ok_and(|file| file.bodies()[0].inertia().is_ok())
+        };
+        let text = table(factor);
+        prop_assert!(PartsTable::read(text.as_bytes(), None).is_err(), "{}", text);
+        // What is in a column of units alone may be a thing there, which is told.
+        prop_assert!(heading == "unit" || !checked(&text), "{}", text);
+        // A factor of one changes nothing.
+        let text = table("1");
+        let is_apart = ["U/F", "U / F", "U, F"].contains(&form) || form == "F U" && !unit.contains(' ');
+        prop_assert!(!is_apart || PartsTable::read(text.as_bytes(), None).is_ok() && checked(&text), "{}", text);
+    }
+}
+
 /// First moments are in their own unit; where there are none, the two words are a mass and a length.
 #[test]
 fn a_unit_of_first_moments_is_theirs() {
@@ -143,6 +184,10 @@ fn columns_in_several_units_have_no_unit_of_a_row() {
         ("note,,", "unit", "kg", true),
         ("note,,", "inertia unit", "g mm2", false),
         ("note,,", "inertia unit", "kg m2", true),
+        ("note,,", "length unit", "\"\"\"\"", false),
+        ("note,,", "length unit", "-", true),
+        ("note,,", "Units", "2", false),
+        ("note,,", "Units", "1 ea", true),
     ] {
         let text = format!(
             "name,mass [kg],cx [mm],cy [mm],cz [mm],{more},shape,{heading}\na,5,1,2,3,,,,point,{cell}\n"

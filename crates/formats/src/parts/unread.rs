@@ -48,7 +48,8 @@ impl Unread {
         terms: &TableTerms,
     ) -> Option<FileBodyError> {
         match self {
-            Self::Unit | Self::Reference => {
+            Self::Unit => self.problem(heading, cell, terms),
+            Self::Reference => {
                 let says_something = cell.contains(char::is_alphabetic);
                 says_something.then(|| self.problem(heading, cell, terms)).flatten()
             }
@@ -69,7 +70,7 @@ impl Unread {
             }
             Self::Unit => {
                 "units are those of a column, and must stand in its heading or in a row below the header: a cell in a row must be empty, \
-                 or name the same units, each as a heading may name it"
+                 or name the same units, each as a heading may name it, with no number, be it a factor or a count of parts"
             }
             Self::Reference => match terms.point() {
                 InertiaPoint::MassCentre => {
