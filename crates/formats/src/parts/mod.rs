@@ -263,13 +263,16 @@ impl PartsTable {
             if let Some(shares) = &mut shares {
                 shares.add(&row, &cells);
             }
-            if let Some(problem) = levels.as_mut().and_then(|levels| levels.add(&row, &cells)) {
-                return Err(PartsError::new(line, Some(row.name()), problem));
+            if let Some(levels) = &mut levels {
+                levels.add(&row, &cells);
             }
             found.push(row);
         }
         if found.is_empty() {
             return Err(PartsError::new(line, None, PartsProblem::NoRows));
+        }
+        if let Some((line, name, problem)) = levels.as_ref().and_then(Levels::problem) {
+            return Err(PartsError::new(line, Some(name), problem));
         }
         if let Some((row, label)) = totals::named(&found) {
             let (_, line) = row.place();
