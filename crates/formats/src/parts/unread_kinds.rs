@@ -50,10 +50,40 @@ const AMOUNTS: [&str; 11] = [
     "qté",
     "qte",
 ];
-const OTHER_AMOUNTS: [&str; 24] = [
-    "price", "cost", "costs", "currency", "eur", "usd", "check", "checked", "verified", "approved",
-    "by", "date", "stock", "order", "ordered", "note", "notes", "comment", "remarks", "kg", "g",
-    "lb", "lbs", "lbm",
+const OTHER_AMOUNTS: [&str; 26] = [
+    "spare", "spares", "price", "cost", "costs", "currency", "eur", "usd", "check", "checked",
+    "verified", "approved", "by", "date", "stock", "order", "ordered", "note", "notes", "comment",
+    "remarks", "kg", "g", "lb", "lbs", "lbm",
+];
+/// What a count of parts counts, before it or behind `of`: a `triangle count` is one of something else.
+const COUNTED: [&str; 27] = [
+    "part",
+    "parts",
+    "item",
+    "items",
+    "instance",
+    "instances",
+    "unit",
+    "units",
+    "component",
+    "components",
+    "body",
+    "bodies",
+    "piece",
+    "pieces",
+    "copy",
+    "copies",
+    "assembly",
+    "assy",
+    "set",
+    "vehicle",
+    "flight",
+    "bom",
+    "total",
+    "identical",
+    "required",
+    "used",
+    "installed",
 ];
 /// Behind one of them, the unit of the amount: `quantity unit`.
 const UNITS: [&str; 3] = ["unit", "units", "uom"];
@@ -222,12 +252,18 @@ impl Unread {
             lists.iter().all(|keys| rest.any(|word| keys.contains(word)))
                 && all.iter().all(|word| is_key(word) || is_measured(word) || beside.contains(word))
         };
+        let is_of_other = |count: usize| {
+            let (before, behind) = (all[..count].last(), &all[count + 1..]);
+            let mut of = behind.iter().skip(1).filter(|word| **word != "the");
+            let counted = if behind.first() == Some(&"of") { of.next() } else { before };
+            counted.is_some_and(|word| !COUNTED.contains(word))
+        };
         let is_amount = |(at, word): (usize, &&str)| {
             let is_unit = all.get(at + 1).is_some_and(|next| UNITS.contains(next));
-            AMOUNTS.contains(word) && !is_unit
+            AMOUNTS.contains(word) && !is_unit && !(*word == "count" && is_of_other(at))
         };
-        let is_of_other = all.iter().any(|word| OTHER_AMOUNTS.contains(word));
-        if all.iter().enumerate().any(is_amount) && !is_of_other {
+        let is_other_amount = all.iter().any(|word| OTHER_AMOUNTS.contains(word));
+        if all.iter().enumerate().any(is_amount) && !is_other_amount {
             return Some(Self::Count);
         }
         KINDS.iter().find(is_of).map(|(kind, ..)| *kind)
@@ -372,6 +408,31 @@ mod tests {
             "#",
             "x",
         ] {
+            assert_eq!(Unread::of(heading), None, "{heading}");
+        }
+    }
+
+    /// Whatever is counted: parts, or something that they have.
+    #[test]
+    fn a_count_is_of_what_stands_beside_it() {
+        let others = ["triangle", "node", "mesh", "pin", "cell", "vertex", "tooth", "wire", "face"];
+        let parts =
+            ["", "part", "item", "instance", "component", "body", "vehicle", "flight", "BOM"];
+        for (words, kind) in [(others, None), (parts, Some(Unread::Count))] {
+            for word in words {
+                for form in
+                    ["W count", "W_COUNT", "Count of W", "count of the W", "W count per part"]
+                {
+                    let heading = form.replace('W', word);
+                    assert_eq!(Unread::of(&heading), kind, "{heading}");
+                }
+            }
+        }
+        // What is counted may be left out.
+        for heading in ["count", "Count per vehicle", "Count per part"] {
+            assert_eq!(Unread::of(heading), Some(Unread::Count), "{heading}");
+        }
+        for heading in ["Spare Qty", "Qty (spares)", "spare_quantity", "Spare parts count"] {
             assert_eq!(Unread::of(heading), None, "{heading}");
         }
     }
