@@ -24,6 +24,14 @@ pub(crate) fn entry_of(name: &str) -> Option<usize> {
     NAMES.iter().position(|known| *known == plain)
 }
 
+/// The names of the products below the diagonal, in the order of those above it.
+pub(crate) const LOWER: [[&str; 2]; 3] = [["iyx", "i21"], ["izx", "i31"], ["izy", "i32"]];
+
+/// Which of them a name means.
+pub(crate) fn lower_of(name: &str) -> Option<usize> {
+    LOWER.iter().position(|names| names.contains(&name))
+}
+
 /// What the products of inertia in a file are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Products {

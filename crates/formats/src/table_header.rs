@@ -2,7 +2,7 @@
 
 use crate::{
     FileBodyError, FileProblem,
-    body::{entry_of, shortened},
+    body::{entry_of, lower_of, shortened},
     error::Refusal,
     heading_sign::without_sign,
     parts::{Unread, heading::is_spread},
@@ -65,10 +65,7 @@ fn column_of(name: &str) -> Option<usize> {
         "mass" | "m" => Some(MASS),
         "name" | "body" | "link" | "part" | "component" => Some(NAME),
         "products" | "poiconv" => Some(PRODUCTS),
-        "iyx" | "i21" => Some(BELOW),
-        "izx" | "i31" => Some(BELOW + 1),
-        "izy" | "i32" => Some(BELOW + 2),
-        _ => entry_of(name),
+        _ => entry_of(name).or_else(|| lower_of(name).map(|product| BELOW + product)),
     }
 }
 
@@ -262,8 +259,11 @@ fn header(text: &Text, row: &[Field], below: Option<&[Field]>) -> Result<Option<
         shared.with(name, heading, its_unit).map_err(refuse)?;
     }
     let count = |of: std::ops::Range<usize>| columns[of].iter().flatten().count();
-    let (products, below_diagonal) = (count(3..BELOW), count(BELOW..MASS));
-    if products == 0 {
+    let (above, below_diagonal) = (count(3..BELOW), count(BELOW..MASS));
+    // The tensor is symmetric: each product may stand in either half.
+    let is_there = |product: &usize| columns[*product].or(columns[*product + 3]).is_some();
+    let products = (3..BELOW).filter(is_there).count();
+    if above == 0 && products < 3 {
         let is_like = |field: &&Field| {
             let heading = field.of(text.as_str());
             !is_spread(heading) && would_change(heading).is_none() && is_unread_product(heading)
@@ -277,9 +277,10 @@ fn header(text: &Text, row: &[Field], below: Option<&[Field]>) -> Result<Option<
         let at = row.first().map_or(0, |field| field.start);
         return Err(text.malformed(at, "columns ixy, ixz, iyz: there must be all three or none"));
     }
-    if below_diagonal != 0 && below_diagonal != 3 {
+    if ![products, 6].contains(&(above + below_diagonal)) {
         let at = row.first().map_or(0, |field| field.start);
-        return Err(text.malformed(at, "columns iyx, izx, izy: there must be all three or none"));
+        let message = "columns iyx, izx, izy: there must be all three or none beside ixy, ixz and iyz, or each product once";
+        return Err(text.malformed(at, message));
     }
     if let Some((heading, other)) = SharedUnit::lacking(&[&mass, &inertia]) {
         let at = row.first().map_or(0, |field| field.start);

@@ -1,7 +1,7 @@
 //! What holds for all rows of a table, which a cell may say again but not change.
 
 use crate::{
-    body::entry_of,
+    body::{entry_of, lower_of},
     units::{Dimension, Unit},
 };
 
@@ -104,6 +104,10 @@ pub(crate) fn dimension_of(word: &str) -> Option<Dimension> {
         "inertia" | "inertias" | "moment" | "moments" | "product" | "products" | "moi" | "mois"
         | "poi" | "pois" | "tensor" | "i" => Some(Dimension::Inertia),
         // `Ixx`, and what is left of `I_xx`.
-        _ => [word, &format!("i{word}")].into_iter().find_map(entry_of).map(|_| Dimension::Inertia),
+        _ => {
+            let names = [word, &format!("i{word}")];
+            let is_entry = |name: &str| entry_of(name).or_else(|| lower_of(name)).is_some();
+            names.into_iter().any(is_entry).then_some(Dimension::Inertia)
+        }
     }
 }

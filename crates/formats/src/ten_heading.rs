@@ -1,7 +1,7 @@
 //! Headings of the ten numbers: mass, mass centre or first moments, and inertia.
 
 use crate::{
-    body::entry_of,
+    body::{entry_of, lower_of},
     heading_sign::without_sign,
     parts::heading::{Group, VALUES, group, is_spread},
     spread,
@@ -109,7 +109,8 @@ fn known(name: &str) -> Option<(usize, Option<TenCentre>, bool)> {
         };
         return Some((place, Some(TenCentre::FirstMoments), false));
     }
-    if let Some(entry) = entry_of(name) {
+    // The tensor is symmetric.
+    if let Some(entry) = entry_of(name).or_else(|| lower_of(name).map(|product| 3 + product)) {
         return Some((4 + entry, None, false));
     }
     match group(name)? {

@@ -6,6 +6,7 @@ mod dressings;
 mod edges;
 mod encodings;
 mod entities;
+mod halves;
 mod headings;
 mod keys;
 mod macros;

@@ -4,7 +4,7 @@ use gyradius_inertia::Shape;
 
 use super::unread_kinds::Unread;
 use crate::{
-    body::entry_of,
+    body::{entry_of, lower_of},
     heading_sign::without_sign,
     product_heading::is_unread_product,
     spread,
@@ -14,9 +14,6 @@ use crate::{
 /// The ten numbers, as messages call them.
 pub(crate) const VALUES: [&str; 10] =
     ["mass", "centre_x", "centre_y", "centre_z", "ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
-
-/// The names of the products below the diagonal, in the order of those above it.
-pub(super) const BELOW: [[&str; 2]; 3] = [["iyx", "i21"], ["izx", "i31"], ["izy", "i32"]];
 
 /// The radii of gyration, as messages call them.
 pub(super) const GYRATION: [&str; 3] = ["kx", "ky", "kz"];
@@ -203,7 +200,7 @@ impl Heading {
     }
 
     /// Whether the three products above the diagonal are in columns that are read.
-    pub(super) fn are_products_read(columns: &[Self]) -> bool {
+    fn are_products_read(columns: &[Self]) -> bool {
         let is_read = |product: usize| {
             let holds =
                 |other: &Self| matches!(other, Self::Column(Column::Value(i, _)) if *i == product);
@@ -212,8 +209,30 @@ impl Heading {
         (7..10).all(is_read)
     }
 
+    /// With products below the diagonal in place of those above it that no column holds: the tensor is symmetric. Where one of the three is in
+    /// neither half, those below are not read.
+    pub(super) fn with_one_half(columns: Vec<Self>) -> Vec<Self> {
+        let holds = |wanted: usize| {
+            columns
+                .iter()
+                .any(|other| matches!(other, Self::Column(Column::Value(i, _)) if *i == wanted))
+        };
+        let above = |column: &Self| match *column {
+            Self::Column(Column::Below(product, unit)) if !holds(7 + product) => {
+                Self::Column(Column::Value(7 + product, unit))
+            }
+            ref other => other.clone(),
+        };
+        let whole: Vec<Self> = columns.iter().map(above).collect();
+        if Self::are_products_read(&whole) {
+            whole
+        } else {
+            columns.into_iter().map(Self::without_products).collect()
+        }
+    }
+
     /// What it means beside no products above the diagonal.
-    pub(super) fn without_products(self) -> Self {
+    fn without_products(self) -> Self {
         match self {
             Self::Column(Column::Below(..)) => Self::Product,
             other => other,
@@ -344,8 +363,7 @@ pub(super) fn may_be_name(text: &str) -> bool {
 
 /// A product below the diagonal, if its unit is read: `Iyx [kg m2]`.
 fn below(text: &str) -> Option<Heading> {
-    let known = |plain: &str| BELOW.iter().position(|names| names.contains(&plain));
-    let (product, tail) = longest_name(text, known)?;
+    let (product, tail) = longest_name(text, lower_of)?;
     let unit = tail.unit(Dimension::Inertia)?.ok()?;
     let stated = (!unit.text.is_empty()).then_some(unit.si);
     Some(Heading::Column(Column::Below(product, stated)))

@@ -149,9 +149,7 @@ impl PartsTable {
         if !columns.contains(&Heading::Column(Column::Shape)) {
             columns = columns.into_iter().map(Heading::without_shapes).collect();
         }
-        if !Heading::are_products_read(&columns) {
-            columns = columns.into_iter().map(Heading::without_products).collect();
-        }
+        columns = Heading::with_one_half(columns);
         // Beside names, numbers are no names.
         let is_id = |heading: &String| squeezed(heading) == "id";
         let names =

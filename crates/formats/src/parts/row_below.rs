@@ -1,10 +1,10 @@
 //! Products below the diagonal of the tensor, which say again what those above it do.
 
 use super::error::PartsProblem;
-use super::heading::{BELOW, Column, Heading, VALUES};
+use super::heading::{Column, Heading, VALUES};
 use super::row::Cells;
 use crate::{
-    body::{Number, shortened},
+    body::{LOWER, Number, shortened},
     rows::is_blank,
 };
 
@@ -20,7 +20,7 @@ impl Cells<'_> {
                 continue;
             }
             let (field, above) = (VALUES[7 + product], above[product]);
-            let below = Number::parse(BELOW[product][0], cell, None)?.value * unit.unwrap_or(1.0);
+            let below = Number::parse(LOWER[product][0], cell, None)?.value * unit.unwrap_or(1.0);
             if (below - above).abs() > ROUNDED * below.abs().max(above.abs()) {
                 let first = format!("{} = {}", shortened(heading), shortened(cell));
                 let second = format!("{field} = {above:?} kg·m²");
