@@ -4,7 +4,7 @@
 const SIGNS: [char; 13] = ['-', '+', '−', '–', '—', '‐', '‑', '‒', '⁻', '⁺', '﹣', '－', '＋'];
 
 /// A heading with blanks in place of its signs; nothing if it has none. What stands between two words is no sign:
-/// `I-xy`, `kg-m²`, `Ixy - kg m²`.
+/// `I-xy`, `kg-m²`, `Ixy - kg m²`. Nor is that of an exponent.
 pub(crate) fn without_sign(heading: &str) -> Option<String> {
     // Longer texts are none, and would be searched for long.
     if heading.len() > 200 {
@@ -14,11 +14,25 @@ pub(crate) fn without_sign(heading: &str) -> Option<String> {
     let mut has_sign = false;
     for (at, c) in heading.char_indices() {
         let (before, after) = (&heading[..at], &heading[at + c.len_utf8()..]);
-        let is_sign = SIGNS.contains(&c) && !is_between_words(before, after);
+        let is_sign = SIGNS.contains(&c)
+            && !is_between_words(before, after)
+            && !is_of_exponent(before, c, after);
         has_sign |= is_sign;
         plain.push(if is_sign { ' ' } else { c });
     }
     has_sign.then_some(plain)
+}
+
+/// Whether a sign is that of the exponent of a number, whose factor no unit may have: `10^-3 kg m2`, `10⁻³`.
+fn is_of_exponent(before: &str, sign: char, after: &str) -> bool {
+    let is_raised = "⁻⁺".contains(sign);
+    let base = before.strip_suffix('^').or_else(|| before.strip_suffix("**"));
+    let base = if is_raised { Some(before) } else { base.or(before.strip_suffix("^{")) };
+    let is_digit = |c: char| {
+        if is_raised { "⁰¹²³⁴⁵⁶⁷⁸⁹".contains(c) } else { c.is_ascii_digit() }
+    };
+    base.is_some_and(|base| base.ends_with(|c: char| c.is_ascii_digit()))
+        && after.starts_with(is_digit)
 }
 
 /// Whether a dash between two parts of a heading joins them.

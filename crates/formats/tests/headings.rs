@@ -220,6 +220,42 @@ fn a_sign_in_a_heading_is_refused() {
     assert!(refusals(below)[0].as_ref().unwrap().contains("it must not have a sign"));
 }
 
+/// A power of ten was refused for a sign, with advice on products.
+#[test]
+fn the_sign_of_an_exponent_is_none_of_a_number() {
+    for sign in ["-", "−", "+", ""] {
+        for factor in ["10^@3", "10**@3", "10^{@3}", "1e@3", "×10^@6", "x 10^@3"] {
+            for form in ["[F U]", "(F·U)", "[U × F]", "[F]"] {
+                for (at, (name, unit)) in TEN.into_iter().enumerate() {
+                    let unit = form.replace('F', &factor.replace('@', sign)).replace('U', unit);
+                    is_refused_for_its_unit(at, name, &unit);
+                }
+            }
+        }
+    }
+    for factor in ["10⁻³", "10⁺³", "10³"] {
+        for (at, (name, unit)) in TEN.into_iter().enumerate() {
+            is_refused_for_its_unit(at, name, &format!("[{factor} {unit}]"));
+        }
+    }
+    // A unit to a negative power is another one, and a sign before a power is a sign.
+    for unit in ["kg m^-2", "kg·m⁻²", "kg*m**-2", "-10^3 kg m2", "-10^-3 kg m2"] {
+        let table = ten_with(|i| TEN[i].0.to_owned()).replacen("Ixx", &format!("Ixx [{unit}]"), 1);
+        let refusals = refusals(&table);
+        assert!(refusals.iter().all(Option::is_some), "{table}{refusals:?}");
+    }
+}
+
+fn is_refused_for_its_unit(at: usize, name: &str, unit: &str) {
+    let table = ten_with(|i| if i == at { format!("{name} {unit}") } else { TEN[i].0.to_owned() });
+    let [checked, list, ten] = refusals(&table);
+    let is_centre = (1..4).contains(&at);
+    for refusal in [checked.filter(|_| !is_centre), list, ten] {
+        let is_so = |said: &String| said.contains("it must be in") && !said.contains("sign");
+        assert!(refusal.as_ref().map_or(is_centre, is_so), "{table}{refusal:?}");
+    }
+}
+
 #[test]
 fn a_dash_between_words_is_no_sign() {
     for dash in ["-", " - ", "_-_", "- "] {
