@@ -113,7 +113,7 @@ impl FirstLook {
         Self::of(surveys, size.max(1))
     }
 
-    /// The same, which looks at these columns of some runs apart too: at all runs of each subset, at most so many.
+    /// The same, which looks at these columns of some runs apart too: at all runs of each subset, at most so many, in the same groups.
     #[must_use]
     pub fn given(
         self,
@@ -127,7 +127,7 @@ impl FirstLook {
             surveys.numbers.extend(columns.iter().map(|column| Numbered {
                 column: column.clone(),
                 subset: Some(place),
-                survey: surveyed(runs, confidence),
+                survey: surveyed(runs, confidence).in_groups_of(self.size),
             }));
         }
         surveys.subsets = subsets;

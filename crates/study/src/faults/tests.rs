@@ -5,20 +5,42 @@ use crate::{
     model::Model,
     study::{all_runs, judged},
 };
+use gyradius_statistics::Survey;
 use proptest::prelude::*;
 use std::fmt::Write;
 
-/// The built-in study with faults of these probabilities of its springs, none where there is none.
-fn scenario(runs: u64, faults: &[[Option<f64>; 2]], requirements: &str) -> Scenario {
+/// The built-in study with faults of these probabilities of its springs, none where there is none, each drawn for a vehicle or not. Vehicles
+/// of several flights have a mass of their own.
+fn scenario(
+    [vehicles, flights]: [u64; 2],
+    faults: &[[Option<f64>; 2]],
+    of_vehicles: [bool; 2],
+    requirements: &str,
+) -> Scenario {
     let paper = Scenario::peck_2003().unwrap().to_toml();
-    let paper = paper.replacen("runs = 2000", &format!("runs = {runs}"), 1);
+    let fleet = flights > 1;
+    let size = if fleet {
+        format!("vehicles = {vehicles}\nflights = {flights}")
+    } else {
+        format!("runs = {vehicles}")
+    };
+    let mass = "mass_kg = { sigma = 500.0, drawn = \"vehicle\" }\n";
+    let paper = paper.replacen("runs = 2000", &size, 1).replacen(
+        "[payload.dispersion]\n",
+        &format!("[payload.dispersion]\n{}", if fleet { mass } else { "" }),
+        1,
+    );
     let mut parts = paper.split("[[springs]]");
     let mut text = parts.next().unwrap().to_owned();
     for (part, [fails, late]) in parts.zip(faults) {
         let mut dispersion = "\n[springs.dispersion]\n".to_owned();
-        for (key, p) in [("failure", fails), ("late", late)] {
+        for ((key, p), of_vehicle) in
+            [("failure", fails), ("late", late)].into_iter().zip(of_vehicles)
+        {
             if let Some(p) = p {
-                writeln!(dispersion, "{key}_probability = {p:?}").unwrap();
+                let drawn = if fleet && of_vehicle { ", drawn = \"vehicle\"" } else { "" };
+                writeln!(dispersion, "{key}_probability = {{ probability = {p:?}{drawn} }}")
+                    .unwrap();
             }
         }
         if late.is_some() {
@@ -36,6 +58,18 @@ const REQUIREMENTS: &str = "[[requirements]]\nname = \"slow\"\nquantity = \"nuta
     probability = 0.9\nconfidence = 0.9\n[[requirements]]\nname = \"fast\"\nquantity = \"relative_speed_m_per_s\"\n\
     at_least = 0.9\nprobability = 0.9\nconfidence = 0.9\nmodel = \"naive\"\n";
 
+/// Of the values of some runs, of which so many in a row are the flights of a vehicle.
+fn of_vehicles_of(flights: u64, values: &[(u64, f64)]) -> SampleSummary {
+    let confidence = Confidence::default();
+    let survey = Survey::new(1 << 10).quantiles([0.05, 0.5, 0.95]);
+    let mut survey = survey.quantile_interval_at(0.95, confidence).in_groups_of(flights);
+    while let Some(mut pass) = survey.pass() {
+        pass.extend(values.iter().copied());
+        survey.advance(pass);
+    }
+    SampleSummary::of(&survey, confidence)
+}
+
 fn probability() -> impl Strategy<Value = Option<f64>> {
     prop_oneof![Just(None), (0.0..0.7).prop_map(Some), Just(Some(0.0)), Just(Some(1.0))]
 }
@@ -43,10 +77,16 @@ fn probability() -> impl Strategy<Value = Option<f64>> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
-    /// Any subset of faults, of any probabilities: runs, failures, outcomes and requirements are those of counting in the table.
+    /// Any subset of faults, of any probabilities, with vehicles of several flights or without: runs, failures, outcomes and requirements are
+    /// those of counting in the table, and intervals take account of what the flights of a vehicle have in common.
     #[test]
-    fn given_faults_are_those_of_counting(faults in prop::collection::vec([probability(), probability()], 4), runs in 20..120_u64) {
-        let scenario = scenario(runs, &faults, REQUIREMENTS);
+    fn given_faults_are_those_of_counting(
+        faults in prop::collection::vec([probability(), probability()], 4),
+        of_vehicles in [any::<bool>(), any::<bool>()],
+        runs in 20..120_u64,
+        flights in 1..6_u64,
+    ) {
+        let scenario = scenario([runs / flights, flights], &faults, of_vehicles, REQUIREMENTS);
         let models = Model::all(&scenario).unwrap();
         let summary = judged(&scenario, &models);
         let possible = faults.iter().flatten().flatten().count();
@@ -98,9 +138,8 @@ proptest! {
                 prop_assert_eq!(given.runs, rows.len() as u64);
                 prop_assert_eq!(given.failed, rows.iter().filter(|row| row.failure().is_some()).count() as u64);
                 for quantity in OUTCOMES {
-                    let values: Vec<f64> = rows.iter().filter_map(|row| quantity.in_row(row)).collect();
-                    let expected = SampleSummary::new(&values, Confidence::default());
-                    prop_assert_eq!(given.outcome(quantity).unwrap().mean, expected.mean);
+                    let values = rows.iter().filter_map(|row| Some((row.run(), quantity.in_row(row)?)));
+                    let expected = of_vehicles_of(flights, &values.collect::<Vec<_>>());
                     prop_assert_eq!(given.outcome(quantity).unwrap(), &expected);
                 }
                 let own: &[_] = if model.name == "naive" { &["slow", "fast"] } else { &["slow"] };
