@@ -1,6 +1,6 @@
 //! What the arithmetic of a run leaves of quantities whose parts cancel.
 
-use crate::{Separation, Settings, load::Size, track::Fate};
+use crate::{BodyState, Separation, Settings, load::Size, track::Fate};
 
 /// The size below which the payload's angular momentum and the relative velocity after a run are
 /// nothing but rounding, so that their directions mean nothing.
@@ -11,11 +11,13 @@ use crate::{Separation, Settings, load::Size, track::Fate};
 /// angular impulse of at most |r| J, with its point r on the payload. The solution of a step is right to
 /// its relative tolerance. Besides, the line s of a spring is a difference of coordinates, as large as
 /// the reach R = |s| + |r_P| + |r_L|, so that rounding turns the force by ε R/|s| and changes it by
-/// ε R/x; the sums of each step round once more. With n steps the directions are lost below
+/// ε R/x; the sums of each step round once more. The bodies are where they are given from the origin, once: their
+/// distance is a difference of positions, and grows by one of velocities, so that rounding turns the force by
+/// 4 ε C/|s| besides, with C = |c_P| + |c_L| + (|v_P| + |v_L|) T. With n steps the directions are lost below
 ///
-/// > Σ |r| J (tol + ε (4 + n) (1 + R/|s| + R/x)) + ε (4 + n) |I| |ω₀|,
+/// > Σ |r| J (tol + ε (4 + n) (1 + R/|s| + R/x) + 4 ε C/|s|) + ε (4 + n) |I| |ω₀|,
 ///
-/// and likewise for the velocity, with 1/μ in the place of |r|.
+/// and likewise for the velocity, with 1/μ in the place of |r|, |v_P − v_L| in that of |I| |ω₀|, and 4 ε (|v_P| + |v_L|) besides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -41,14 +43,22 @@ impl Rounding {
         let inertia = payload.body().inertia().matrix();
         let spin = inertia.norm() * payload.state().angular_velocity.norm();
         let speed = (payload.state().velocity - stage.state().velocity).norm();
-        let mut rounding = Self { momentum: epsilon * spin, velocity: epsilon * speed };
+        let once = 4.0 * f64::EPSILON;
+        let states = [payload.state(), stage.state()];
+        let [position, velocity]: [f64; 2] =
+            [|of: &BodyState| of.position, |of: &BodyState| of.velocity]
+                .map(|of| states.iter().map(|state| of(state).norm()).sum());
+        let mut rounding =
+            Self { momentum: epsilon * spin, velocity: epsilon * speed + once * velocity };
         for (load, fate) in separation.seated().iter().zip(loads) {
             let (Some(release), Some(start)) = (fate.let_go(), load.start_s()) else { continue };
             let Size { travel, force, arms, distance, .. } = load.size();
             let reach = distance + arms[0] + arms[1];
             let impulse = force * (release - start);
-            let relative =
-                settings.relative_tolerance() + epsilon * (1.0 + reach / distance + reach / travel);
+            let from_origin = position + velocity * release;
+            let relative = settings.relative_tolerance()
+                + epsilon * (1.0 + reach / distance + reach / travel)
+                + once * from_origin / distance;
             rounding.momentum += arms[0] * impulse * relative;
             rounding.velocity += impulse * separation.inverse_reduced_mass() * relative;
         }
