@@ -287,10 +287,11 @@ fn put(vector: &mut Vector3<f64>, component: usize, value: f64) {
     }
 }
 
-/// The axis that a direction is nearest to.
+/// The axis that a direction is nearest to: of several that it is as near to, to a millionth, the last one. The rounding of how the
+/// bodies stand must not choose.
 fn nearest_axis(direction: &Vector3<f64>) -> usize {
-    let size = direction.abs();
-    if size.z >= size.x && size.z >= size.y { 2 } else { usize::from(size.y >= size.x) }
+    let nearest = direction.amax() * (1.0 - 1e-6);
+    (0..3).rfind(|axis| direction[*axis].abs() >= nearest).unwrap_or(2)
 }
 
 fn normalized(v: &Vector3<f64>) -> Vector3<f64> {

@@ -3,7 +3,7 @@
 use crate::common::{differences, inertia, log_fit, moved, paper, relative, skewed};
 use gyradius_separation::{
     Batch, Body, BodyState, Load, LoadId, MovingBody, Outcome, RunError, Separation, Settings,
-    Spring,
+    Spring, SpringParameter, Stack,
 };
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
@@ -274,6 +274,40 @@ fn a_turned_and_a_moving_world_change_nothing() {
             assert!((a.velocity - b.velocity - boost).norm() < 1e-11);
             assert!((a.position - b.position - shift - boost * time).norm() < 1e-11);
         }
+    }
+}
+
+proptest! {
+    /// Lines of action that are as near to one axis of the stage as to another tilt in the same way however the world is turned.
+    #[test]
+    fn a_turned_world_tilts_no_line_otherwise(
+        components in prop_oneof![Just([1.0, 0.0, 1.0]), Just([1.0, 1.0, 0.0]), Just([0.0, 1.0, 1.0]), Just([1.0; 3]),
+            Just([1.0, 0.5, 1.0]), Just([0.0, 0.0, 1.0])],
+        signs in prop::array::uniform3(prop_oneof![Just(1.0), Just(-1.0)]),
+        stage_turn in prop::array::uniform3(-2.0..2.0f64),
+        turn in prop::array::uniform3(-2.0..2.0f64),
+        tilts in prop::array::uniform2(-20.0..20.0f64),
+    ) {
+        let line = Vector3::from_fn(|i, _| 0.1 * components[i] * signs[i]);
+        let outcome = |turn: UnitQuaternion<f64>| {
+            let attitude = turn * UnitQuaternion::from_scaled_axis(stage_turn.into());
+            let body = |mass: f64, place: f64| {
+                let body = Body::new(mass, inertia([50.0, 40.0, 30.0], [2.0, 1.0, -3.0])).unwrap();
+                body.moving(BodyState { position: attitude * Vector3::z() * place, attitude, ..Default::default() })
+            };
+            let springs = [0.3, -0.2].map(|side| {
+                let point = Vector3::new(side, 0.1, 0.9);
+                Spring::new(2e4, 0.1, point + line - Vector3::z() * 2.0, point).unwrap()
+            });
+            let mut stack = Stack::from(&Separation::new(body(100.0, 1.0), body(300.0, -1.0), &springs).unwrap());
+            (0..2).for_each(|i| stack.set_load(0, SpringParameter::LineOfAction, i, tilts[i]));
+            run(&stack.separation().unwrap())
+        };
+        let turn = UnitQuaternion::from_scaled_axis(turn.into());
+        let (plain, turned) = (outcome(UnitQuaternion::identity()), outcome(turn));
+        let [a, b] = [&plain, &turned].map(|outcome| outcome.payload().state().angular_velocity);
+        prop_assert!((a - b).norm() < 1e-11 * (1.0 + a.norm()), "{} {}", a, b);
+        prop_assert!((turn * plain.relative_velocity() - turned.relative_velocity()).norm() < 1e-11);
     }
 }
 
