@@ -113,24 +113,25 @@ impl FirstLook {
         Self::of(surveys, size.max(1))
     }
 
-    /// The same, which looks at these columns of some runs apart too: at all runs of each subset, at most so many, in the same groups.
+    /// The same, which looks at some columns of some runs apart too: at those of all runs of each subset, at most so many, in the same
+    /// groups.
     #[must_use]
     pub fn given(
         self,
-        subsets: Vec<Subset>,
-        columns: &[String],
+        subsets: impl IntoIterator<Item = (Subset, Vec<String>)>,
         runs: u64,
         confidence: Confidence,
     ) -> Self {
         let mut surveys = self.surveys;
-        for place in 0..subsets.len() {
-            surveys.numbers.extend(columns.iter().map(|column| Numbered {
-                column: column.clone(),
+        for (subset, columns) in subsets {
+            let place = surveys.subsets.len();
+            surveys.numbers.extend(columns.into_iter().map(|column| Numbered {
+                column,
                 subset: Some(place),
                 survey: surveyed(runs, confidence).in_groups_of(self.size),
             }));
+            surveys.subsets.push(subset);
         }
-        surveys.subsets = subsets;
         Self::of(surveys, self.size)
     }
 
@@ -264,16 +265,21 @@ impl Surveys {
         self.survey(column, None)
     }
 
-    /// What a column of numbers looks like in the runs of the subset in a place; none if it was not looked at.
+    /// What a column of numbers looks like in the runs of a subset; none if it was not looked at.
     #[must_use]
-    pub fn column_given(&self, subset: usize, column: &str) -> Option<&Survey> {
-        self.survey(column, Some(subset))
+    pub fn column_given(&self, subset: &Subset, column: &str) -> Option<&Survey> {
+        self.survey(column, Some(self.place(subset)?))
     }
 
-    /// How many runs the subset in a place has, and how many of them failed.
+    /// How many runs a subset has, and how many of them failed; none if it was not looked at.
     #[must_use]
-    pub fn runs_given(&self, subset: usize) -> [u64; 2] {
-        self.counts.of_subsets.get(subset).copied().unwrap_or_default()
+    pub fn runs_given(&self, subset: &Subset) -> [u64; 2] {
+        let counts = self.place(subset).and_then(|place| self.counts.of_subsets.get(place));
+        counts.copied().unwrap_or_default()
+    }
+
+    fn place(&self, subset: &Subset) -> Option<usize> {
+        self.subsets.iter().position(|own| own == subset)
     }
 
     fn survey(&self, column: &str, subset: Option<usize>) -> Option<&Survey> {

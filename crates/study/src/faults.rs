@@ -58,6 +58,8 @@ struct Fault {
     name: String,
     /// Where the run table has it.
     column: String,
+    /// Where the run table has when the load starts, if it is late.
+    start: Option<String>,
 }
 
 /// What is counted of requirements given each fault, block by block.
@@ -73,16 +75,19 @@ impl<'a> Faults<'a> {
     /// Of the runs of a model of a scenario.
     pub(crate) fn new(scenario: &'a Scenario, model: &str) -> Self {
         let loads: Vec<_> = scenario.separation().loads().map(|(load, _)| load).collect();
-        let dispersed = scenario.dispersions().all().iter();
-        let fault = |(place, what, column): (usize, &str, &str)| Fault {
+        let dispersed = scenario.dispersions().all();
+        let fault = |(place, what, column, start): (usize, &str, &str, Option<Target>)| Fault {
             name: loads
                 .get(place)
                 .map_or_else(|| column.to_owned(), |load| format!("{load} {what}")),
             column: column.to_owned(),
+            start: dispersed.iter().find(|d| Some(d.target) == start).map(|d| d.column.clone()),
         };
-        let faults = dispersed.filter_map(|d| match d.target {
-            Target::Fails(load) => Some((load, "fails", d.column.as_str())),
-            Target::Late(load, _) => Some((load, "is late", d.column.as_str())),
+        let faults = dispersed.iter().filter_map(|d| match d.target {
+            Target::Fails(load) => Some((load, "fails", d.column.as_str(), None)),
+            Target::Late(load, start) => {
+                Some((load, "is late", d.column.as_str(), Some(Target::Load(load, start, 0))))
+            }
             Target::Body(..) | Target::Stack(..) | Target::Load(..) => None,
         });
         let faults: Vec<Fault> = faults.map(fault).collect();
@@ -103,15 +108,17 @@ impl<'a> Faults<'a> {
         [Subset::Without(columns().collect())].into_iter().chain(with).collect()
     }
 
-    /// The look at columns that looks at the outcomes given each fault too.
+    /// The look at columns that looks at the outcomes given each fault too, and at when what is late starts.
     pub(crate) fn watched_by(
         &self,
         look: FirstLook,
         runs: u64,
         confidence: Confidence,
     ) -> FirstLook {
-        let columns = OUTCOMES.map(|quantity| quantity.column().into_owned());
-        look.given(self.subsets(), &columns, runs, confidence)
+        let outcomes = || OUTCOMES.iter().map(|quantity| quantity.column().into_owned());
+        let starts = [None].into_iter().chain(self.faults.iter().map(|fault| fault.start.clone()));
+        let columns = starts.map(|start| outcomes().chain(start).collect());
+        look.given(self.subsets().into_iter().zip(columns), runs, confidence)
     }
 
     /// Looks at a block.
@@ -138,14 +145,14 @@ impl<'a> Faults<'a> {
 
     /// What happens given each fault; nothing without faults.
     pub(crate) fn finish(self, surveys: &Surveys, confidence: Confidence) -> Vec<GivenFault> {
-        let subsets = self.subsets().len();
+        let subsets = self.subsets();
         let counts = self.counts.into_inner().unwrap_or_else(PoisonError::into_inner);
         let name = |place: usize| Some(self.faults.get(place.checked_sub(1)?)?.name.clone());
-        let given = |place: usize| {
-            let [runs, failed] = surveys.runs_given(place);
+        let given = |(place, subset): (usize, Subset)| {
+            let [runs, failed] = surveys.runs_given(&subset);
             let outcome = |quantity: &Quantity| {
                 let column = quantity.column().into_owned();
-                let sample = SampleSummary::of(surveys.column_given(place, &column)?, confidence);
+                let sample = SampleSummary::of(surveys.column_given(&subset, &column)?, confidence);
                 Some(Outcome { column, sample })
             };
             let of_place = counts.iter().skip(place * self.requirements.len());
@@ -163,7 +170,7 @@ impl<'a> Faults<'a> {
                 requirements: self.requirements.iter().zip(of_place).map(failing).collect(),
             }
         };
-        (0..subsets).map(given).collect()
+        subsets.into_iter().enumerate().map(given).collect()
     }
 }
 

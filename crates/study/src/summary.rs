@@ -1,6 +1,6 @@
 //! Every number that the report shows.
 
-use gyradius_campaign::{Column, SampleSummary, Share, Surveys, bounded};
+use gyradius_campaign::{Column, SampleSummary, Share, Subset, Surveys, bounded};
 use gyradius_report::Figure;
 use gyradius_statistics::{Confidence, Interval, Moments, StatisticsError, Survey};
 use rayon::prelude::*;
@@ -296,8 +296,8 @@ fn dispersed(scenario: &Scenario, seen: &Seen) -> Vec<DispersedSummary> {
             Target::Late(load, parameter) => Target::Load(load, parameter, 0) == start.target,
             Target::Body(..) | Target::Stack(..) | Target::Load(..) | Target::Fails(_) => false,
         };
-        let late = all.iter().find(of_start)?;
-        LateSummary::new(moments(&late.column)?, moments(&start.column)?, start.nominal)
+        let late = Subset::With(all.iter().find(of_start)?.column.clone());
+        Some(LateSummary::new(seen.surveys.column_given(&late, &start.column)?))
     };
     let summary = |d: &Dispersed| DispersedSummary {
         quantity: d.column.clone(),
@@ -314,21 +314,10 @@ fn dispersed(scenario: &Scenario, seen: &Seen) -> Vec<DispersedSummary> {
 }
 
 impl LateSummary {
-    /// From the moments of all runs, of whether a load is late and of when it starts: in time if it is not late.
-    fn new(late: &Moments, start: &Moments, in_time: f64) -> Option<Self> {
-        let (n, of_late) = (start.n() as f64, (late.mean() * late.n() as f64).round());
-        if late.n() != start.n() {
-            return None;
-        }
-        let after = start.mean() - in_time;
-        let mean = n * after / of_late;
-        let squares = (n - 1.0) * start.standard_deviation().powi(2) + n * after * after;
-        let variance = (squares - of_late * mean * mean).max(0.0) / (of_late - 1.0);
-        Some(Self {
-            runs: of_late as u64,
-            mean: (of_late > 0.0).then_some(in_time + mean),
-            deviation: (of_late > 1.0).then(|| variance.sqrt()),
-        })
+    /// Of when a load starts in the runs in which it is late.
+    fn new(start: &Survey) -> Self {
+        let deviation = start.moments().map(Moments::standard_deviation);
+        Self { runs: start.n(), mean: start.mean(), deviation }
     }
 }
 
