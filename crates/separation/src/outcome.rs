@@ -119,7 +119,8 @@ impl Outcome {
     }
 
     /// Angle between the relative velocity and the intended direction of separation (inertial axes),
-    /// rad; none if the mass centres do not part, or by no more than the rounding of the run.
+    /// rad; none if the mass centres do not part, or by no more than
+    /// [the rounding of the run](Self::velocity_rounding).
     #[must_use]
     pub fn direction_error(&self, intended: &Unit<Vector3<f64>>) -> Option<f64> {
         let velocity = self.relative_velocity();
@@ -141,6 +142,12 @@ impl Outcome {
     #[must_use]
     pub fn momentum_rounding(&self) -> f64 {
         self.rounding.momentum
+    }
+
+    /// A velocity of the mass centres from each other up to this, m/s, is nothing but rounding of the run, and has no direction.
+    #[must_use]
+    pub fn velocity_rounding(&self) -> f64 {
+        self.rounding.velocity
     }
 
     /// Tip-off rates: angular velocities of payload and stage after the last release less those at the

@@ -151,15 +151,15 @@ impl Alert {
         (angle_deg > OFF_AXIS_DEG).then_some(Self::OffAxis { angle_deg, spin_axis })
     }
 
-    /// That outcomes, by their labels and of these scales, have heavy tails: they vary by more than this rounding.
+    /// That outcomes, by their labels and with their units, have heavy tails: they vary by more than this rounding.
     pub(crate) fn heavy_tails<'a>(
         model: &str,
-        outcomes: impl IntoIterator<Item = (String, f64, &'a SampleSummary)>,
+        outcomes: impl IntoIterator<Item = (String, &'a str, &'a SampleSummary)>,
         rounding: Rounding,
     ) -> Option<Self> {
-        let heavy = |(label, scale, sample): (String, f64, &SampleSummary)| {
+        let heavy = |(label, unit, sample): (String, &str, &SampleSummary)| {
             let kurtosis = sample.kurtosis.filter(|kurtosis| *kurtosis > HEAVY)?;
-            let varies = rounding.is_exceeded(sample.minimum?, sample.maximum?, scale);
+            let varies = rounding.is_exceeded(sample.minimum?, sample.maximum?, unit);
             varies.then_some((label, kurtosis))
         };
         let outcomes: Vec<(String, f64)> = outcomes.into_iter().filter_map(heavy).collect();
@@ -280,6 +280,8 @@ mod together;
 
 #[cfg(test)]
 mod root_tests;
+#[cfg(test)]
+mod rounding_tests;
 #[cfg(test)]
 mod some_runs_tests;
 #[cfg(test)]

@@ -152,13 +152,14 @@ pub(crate) fn judged<C: Subject>(
     let (mut all, mut where_they_fail) = (Vec::new(), Vec::new());
     let (inputs, main, group) =
         (scenario.drawn_columns(), scenario.main_outcomes(), group(scenario));
+    let rounding = scenario.rounding();
     for (judging, runs) in judging.into_iter().zip(runs) {
         let model = runs.model();
         let judged = judging.finish(runs)?;
         let worst = judged.iter().flat_map(named).map(|(run, _)| run).collect();
         let drawn = scenario.drawn_inputs(summary, model);
-        let (drawn, rounding) = without_rounding(drawn, &scenario.inertias());
-        let moves = |column: &&String| !rounding.iter().any(|input| input.column == **column);
+        let (drawn, unmoved) = without_rounding(drawn, &scenario.inertias());
+        let moves = |column: &&String| !unmoved.iter().any(|input| input.column == **column);
         let inputs: Vec<String> = inputs.iter().filter(moves).cloned().collect();
         let found = unusual(&drawn, &worst, runs)?;
         all.extend(judged.into_iter().map(|judgement| {
@@ -167,13 +168,8 @@ pub(crate) fn judged<C: Subject>(
             Judged { model: model.to_owned(), judgement, unusual }
         }));
         let requirements = requirements_of(scenario, model);
-        let asked = Asked {
-            requirements: &requirements,
-            inputs: &inputs,
-            main: &main,
-            group,
-            rounding: C::ROUNDING,
-        };
+        let asked =
+            Asked { requirements: &requirements, inputs: &inputs, main: &main, group, rounding };
         where_they_fail.extend(where_runs_fail::found(runs, asked)?);
     }
     let head = summary.head_mut();

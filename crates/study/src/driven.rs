@@ -18,7 +18,7 @@ pub struct Drivers {
     pub groups: Vec<String>,
     /// The outputs that vary.
     pub outputs: Vec<Driven>,
-    /// The others, which are the same in all of these runs or missing: names of columns and of requirements.
+    /// The others, which are the same in all of these runs but for rounding, or missing: names of columns and of requirements.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<String>,
     /// SHA-256 of what the runs depend on, and of the requirements.

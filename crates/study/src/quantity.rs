@@ -47,13 +47,7 @@ macro_rules! quantities {
             Release(LoadId),
         }
 
-        /// How large a value is that rounding is measured by, whatever the values of this unit are: a degree of angles, which may be
-/// zero but for rounding, and nothing else.
-pub(crate) fn scale_of(unit: &str) -> f64 {
-    if unit == "deg" { 1.0 } else { 0.0 }
-}
-
-impl Quantity {
+        impl Quantity {
             /// All but those of single loads, in the order of the run table.
             pub const ALL: &'static [Self] = &[$(Self::$name),+];
 
@@ -315,17 +309,10 @@ impl Quantity {
         self.declaration().unit
     }
 
-    /// As [`scale_of`] says of its unit.
-    pub(crate) fn scale(self) -> f64 {
-        scale_of(self.unit())
-    }
-
     /// Whether its values differ by more than rounding.
-    pub(crate) fn varies(self, survey: &Survey) -> bool {
+    pub(crate) fn varies(self, survey: &Survey, rounding: Rounding) -> bool {
         let range = survey.minimum().zip(survey.maximum());
-        range.is_some_and(|((least, _), (most, _))| {
-            Rounding::OF_SEPARATIONS.is_exceeded(least, most, self.scale())
-        })
+        range.is_some_and(|((least, _), (most, _))| rounding.is_exceeded(least, most, self.unit()))
     }
 
     /// What it means, in a sentence.

@@ -40,7 +40,6 @@ impl Grouped for Separations<'_> {
 impl Subject for Scenario {
     /// Some tenths of a second of separations.
     const BLOCK_RUNS: u64 = 1 << 14;
-    const ROUNDING: Rounding = Rounding::OF_SEPARATIONS;
     const MAIN_OUTCOMES: &str = "each outcome under “What the payload does”";
     const IMMATERIAL: &[&str] =
         &["runs", "vehicles", "rows", "columns", "requirements", "until", "drivers"];
@@ -134,6 +133,10 @@ impl Subject for Scenario {
 
     fn drawn_inputs(&self, summary: &Summary, model: &str) -> Vec<DrawnInput> {
         summary.model(model).map_or_else(Vec::new, ModelSummary::drawn_inputs)
+    }
+
+    fn rounding(&self) -> Rounding {
+        Rounding::of_separations(self.separation(), self.settings())
     }
 
     fn report_files(&self) -> Vec<String> {

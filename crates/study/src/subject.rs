@@ -24,8 +24,6 @@ use crate::{
 pub(crate) trait Subject: Framed + Sync {
     /// Runs of a block: what is lost, at most, on each thread that is interrupted.
     const BLOCK_RUNS: u64;
-    /// How much of the outcomes of runs is rounding.
-    const ROUNDING: Rounding;
     /// What each of the [main outcomes](Self::main_outcomes) is called on a page.
     const MAIN_OUTCOMES: &str;
     /// Keys of the resolved scenario, by their paths, that no run depends on.
@@ -88,6 +86,8 @@ pub(crate) trait Subject: Framed + Sync {
     fn may_change(&self) -> bool {
         false
     }
+    /// How much of the outcomes of runs is rounding.
+    fn rounding(&self) -> Rounding;
     /// What a simulator wrote that nobody had asked for.
     fn unasked(&self, _: &Self::Prepared) -> Option<Unasked> {
         None

@@ -19,6 +19,7 @@ use crate::{
     model::Model,
     quantity::Quantity,
     regions::RegionSummary,
+    rounding::Rounding,
     run::Case,
     scenario::{Dispersed, Each, ModelLaw, Scenario, Target},
     seen::Seen,
@@ -208,7 +209,7 @@ impl Summary {
         every_model: Section,
     ) -> Result<Self, StatisticsError> {
         let confidence = Confidence::default();
-        let nominal = nominal(scenario);
+        let (nominal, rounding) = (nominal(scenario), scenario.rounding());
         let models = models
             .par_iter()
             .zip(runs)
@@ -224,12 +225,15 @@ impl Summary {
                     physical: physical.model().to_owned(),
                     naive: naive.model().to_owned(),
                     ratios: all(scenario)
-                        .map(|q| Ratio::new(q, physical, naive, confidence))
+                        .map(|q| Ratio::new(q, physical, naive, rounding, confidence))
                         .collect(),
                 }
             })
             .collect();
-        let alerts = models.iter().zip(runs).flat_map(|(model, seen)| model.alerts(scenario, seen));
+        let alerts = models
+            .iter()
+            .zip(runs)
+            .flat_map(|(model, seen)| model.alerts(scenario, seen, rounding));
         let alerts =
             alerts.chain(Alert::off_axis(scenario.payload().moving(), scenario.spin_axis()));
         let alerts = alerts.chain(scenario.off_nominal().into_iter().map(Alert::OffNominal));
@@ -375,7 +379,7 @@ impl ModelSummary {
     }
 
     /// What a reader should know of it first.
-    fn alerts(&self, scenario: &Scenario, seen: &Seen) -> Vec<Alert> {
+    fn alerts(&self, scenario: &Scenario, seen: &Seen, rounding: Rounding) -> Vec<Alert> {
         let name = &self.name;
         let failed = Alert::failed(&seen.surveys);
         let unmoved = scenario.dispersions().all().iter().filter_map(|dispersed| {
@@ -384,7 +388,7 @@ impl ModelSummary {
         });
         let outcomes = || self.quantities.iter().filter(|q| q.quantity.is_told());
         let heavy =
-            outcomes().map(|q| (q.quantity.label().into_owned(), q.quantity.scale(), &q.sample));
+            outcomes().map(|q| (q.quantity.label().into_owned(), q.quantity.unit(), &q.sample));
         let near = Body::BOTH.map(Body::name).into_iter().zip(seen.near_boundary);
         let near = near.filter_map(|(body, [near, of])| Alert::near_boundary(name, body, near, of));
         let parted = seen.quantity(Quantity::DirectionError).map_or(0, Survey::n);
@@ -393,7 +397,7 @@ impl ModelSummary {
         let told = outcomes().map(|q| (q.quantity.label().into_owned(), q.sample.n));
         let few = Alert::few_values(name, told, self.succeeded());
         let first = failed.into_iter().chain(backwards).chain(few).chain(unmoved);
-        first.chain(Alert::heavy_tails(name, heavy, Scenario::ROUNDING)).chain(near).collect()
+        first.chain(Alert::heavy_tails(name, heavy, rounding)).chain(near).collect()
     }
 
     /// What its runs draw, the entries of the inertias too.
@@ -446,10 +450,16 @@ impl QuantitySummary {
 }
 
 impl Ratio {
-    fn new(quantity: Quantity, physical: &Seen, naive: &Seen, confidence: Confidence) -> Self {
+    fn new(
+        quantity: Quantity,
+        physical: &Seen,
+        naive: &Seen,
+        rounding: Rounding,
+        confidence: Confidence,
+    ) -> Self {
         let both = naive.quantity(quantity).zip(physical.quantity(quantity));
         // Over a spread of rounding no ratio means anything.
-        let moving = both.filter(|(_, physical)| quantity.varies(physical));
+        let moving = both.filter(|(_, physical)| quantity.varies(physical, rounding));
         let deviations = moving.and_then(|(n, p)| n.deviation().zip(p.deviation()));
         let means = both.and_then(|(n, p)| n.mean().zip(p.mean()));
         Self {

@@ -8,7 +8,7 @@ use gyradius_campaign::{
     Blocks, Column, Doing, Folder, Identity, Output, Plan, Progress, Simulation, run_missing,
     sha256,
 };
-use gyradius_statistics::Confidence;
+use gyradius_statistics::{Confidence, SobolIndices};
 use rayon::ThreadPool;
 
 use crate::{
@@ -77,7 +77,7 @@ impl<C: Subject> Finding<'_, '_, C> {
         let (mark, force) = (self.scenario.to_toml(), true);
         let blocks =
             self.folder.blocks_beside(BESIDE, (self.identity, &mark), most, force, self.threads)?;
-        let (mut all, mut done) = (Vec::new(), 0);
+        let (mut all, mut done, rounding) = (Vec::new(), 0, self.scenario.rounding());
         for (model, simulation) in names.into_iter().zip(simulations) {
             let groups = simulation.groups().names().to_vec();
             let designs = simulation.groups().designs();
@@ -116,7 +116,12 @@ impl<C: Subject> Finding<'_, '_, C> {
             }));
             let (mut driven, mut left_out) = (Vec::new(), Vec::new());
             for ((output, unit), indices) in names.zip(indices) {
-                match indices {
+                let moves = |indices: &SobolIndices| {
+                    let unit = unit.as_deref().unwrap_or_default();
+                    let size = rounding.size(indices.mean(), unit);
+                    rounding.is_exceeded_by(indices.standard_deviation(), size)
+                };
+                match indices.filter(moves) {
                     Some(indices) => driven.push(Driven { output, unit, indices }),
                     None if unit.is_none() => left_out.push(fails(&output)),
                     None => left_out.push(output),

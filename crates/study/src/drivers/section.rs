@@ -156,7 +156,7 @@ fn all(drivers: &Drivers) -> Option<Section> {
 fn left_out(drivers: &Drivers) -> Option<String> {
     let names = &drivers.left_out;
     let text = format!(
-        "Left out are outputs that are the same in all of these runs, or missing: {}.",
+        "Left out are outputs that are the same in all of these runs but for rounding, or missing: {}.",
         first_names(names.iter().cloned(), NAMED)
     );
     (!names.is_empty()).then_some(text)

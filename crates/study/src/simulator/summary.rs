@@ -90,7 +90,7 @@ impl SimulatorScenario {
         let outputs: Vec<(String, &SampleSummary)> = outputs
             .filter_map(|(column, _, samples)| Some((column.to_owned(), samples.get(place)?)))
             .collect();
-        let heavy = outputs.iter().map(|(column, sample)| (column.clone(), 0.0, *sample));
+        let heavy = outputs.iter().map(|(column, sample)| (column.clone(), "", *sample));
         let told = outputs.iter().map(|(column, sample)| (column.clone(), sample.n));
         let (_, failures, runs) = overview.failed().nth(place).unwrap_or_default();
         let few = Alert::few_values(name, told, runs - failures);
@@ -100,7 +100,7 @@ impl SimulatorScenario {
         failed
             .chain(few)
             .chain(unmoved)
-            .chain(Alert::heavy_tails(name, heavy, Self::ROUNDING))
+            .chain(Alert::heavy_tails(name, heavy, self.rounding()))
             .chain(near)
             .collect()
     }
@@ -152,7 +152,6 @@ impl Grouped for ExternalSimulation<'_, SimulatorDraws<'_>> {
 impl Subject for SimulatorScenario {
     /// Few, for a run of a simulator may take seconds.
     const BLOCK_RUNS: u64 = 1 << 8;
-    const ROUNDING: Rounding = Rounding::OF_LAST_PLACES;
     const MAIN_OUTCOMES: &str = "each output";
     /// Machines that do a campaign together may have the simulator in different places.
     const IMMATERIAL: &[&str] = &[
@@ -304,6 +303,10 @@ impl Subject for SimulatorScenario {
             DrawnInput::new(name, sample.mean, sample.deviation)
         };
         drawn.filter_map(input).collect()
+    }
+
+    fn rounding(&self) -> Rounding {
+        Rounding::OF_LAST_PLACES
     }
 
     fn report_files(&self) -> Vec<String> {

@@ -14,7 +14,7 @@ use gyradius_statistics::{
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{quantity::scale_of, rounding::Rounding};
+use crate::rounding::Rounding;
 use rows::FirstRuns;
 
 pub(crate) use section::sections;
@@ -193,10 +193,12 @@ pub(crate) fn found(runs: &Runs, asked: Asked<'_>) -> Result<Option<WhereRunsFai
 fn varying(runs: &Runs, outcome: &Measured, numbers: &[f64], rounding: Rounding) -> bool {
     let of = |name: &String| runs.columns().iter().find(|column| column.name() == name);
     let units = outcome.columns().iter().map(|name| of(name).and_then(Column::unit));
-    let scale = units.map(|unit| scale_of(unit.unwrap_or_default())).fold(0.0, f64::max);
+    let units: Vec<&str> = units.map(Option::unwrap_or_default).collect();
     let finite = || numbers.iter().copied().filter(|x| x.is_finite());
     let range = finite().reduce(f64::min).zip(finite().reduce(f64::max));
-    range.is_some_and(|(least, most)| rounding.is_exceeded(least, most, scale))
+    range.is_some_and(|(least, most)| {
+        units.iter().all(|unit| rounding.is_exceeded(least, most, unit))
+    })
 }
 
 /// The quantities of the requirements, each once, or the main outcomes without any, and those of them that are left out.

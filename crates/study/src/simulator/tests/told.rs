@@ -274,7 +274,7 @@ proptest! {
                 prop_assert_eq!(figure.contains(name), place < 6, "{}", name);
                 prop_assert!(page.contains(&format!("{name}, all")), "{} {}", name, page);
             }
-            let named = format!("the same in all of these runs, or missing: {}", of(true).join(", "));
+            let named = format!("the same in all of these runs but for rounding, or missing: {}", of(true).join(", "));
             prop_assert_eq!(page.contains(&named), !of(true).is_empty(), "{}", page);
             prop_assert_eq!(page.contains("A figure has 6 outputs at most"), of(false).len() > 6);
         }
