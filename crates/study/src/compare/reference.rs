@@ -136,7 +136,7 @@ impl Target {
         if largest(self.moments.deviations()) > EXACT * largest(self.moments.mean()) {
             Ok(self)
         } else {
-            Err("the inertia is not dispersed, so that there is no covariance to match".to_owned())
+            Err("the inertia is not dispersed where the mass is nominal, so that there is no covariance to match".to_owned())
         }
     }
 

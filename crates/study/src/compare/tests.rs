@@ -296,14 +296,18 @@ fn bodies_that_are_known_exactly_have_words_and_no_numbers() {
     let still = "\nroot_second_moment_variance_kg_m2 = [0.0, 0.0, 0.0]\naxes = \"fixed\"\n";
     let of_payload = before.split_once("[payload.dispersion]").unwrap();
     let (of_payload, (_, rest)) = (of_payload.0, of_payload.1.split_once("\n\n").unwrap());
-    for (payload_too, head) in [
-        (false, before.to_owned()),
-        (true, format!("{of_payload}[payload.dispersion]{still}\n{rest}")),
+    // What the mass does to an inertia is no matter of its law.
+    let follows = "mass_percent = 5.0\ninertia_follows_mass = true\n";
+    for (payload_too, head, follows) in [
+        (false, before.to_owned(), ""),
+        (false, before.to_owned(), follows),
+        (true, format!("{of_payload}[payload.dispersion]{still}\n{rest}"), ""),
+        (true, format!("{of_payload}[payload.dispersion]{still}{follows}\n{rest}"), follows),
     ] {
         // The models that are matched need a covariance.
         let (after, _) = after.split_once("[[models]]").unwrap();
         let text = format!(
-            "{head}[stage.dispersion]{still}\n{after}[[models]]\nname = \"own\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n"
+            "{head}[stage.dispersion]{still}{follows}\n{after}[[models]]\nname = \"own\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n"
         );
         let scenario = Scenario::from_toml(&text).unwrap_or_else(|e| panic!("{e}\n{text}"));
         let every = Section::new(&scenario, &|| Ok(())).unwrap();
@@ -313,7 +317,7 @@ fn bodies_that_are_known_exactly_have_words_and_no_numbers() {
         assert_eq!(page.is_none(), payload_too);
         let Some(page) = page else { continue };
         assert!(!page.contains("NaN") && !page.contains(" inf "), "{page}");
-        let why = "> stage: no reference: the inertia is not dispersed";
+        let why = "> stage: no reference: the inertia is not dispersed where the mass is nominal";
         assert!(page.contains(why), "{page}");
         let rows = page.lines().filter(|line| line.starts_with("| ") && !line.starts_with("| ---"));
         let rows: Vec<Vec<&str>> = rows.skip(1).map(|line| line.split(" | ").collect()).collect();
