@@ -168,6 +168,12 @@ impl<'a> End<'a> {
         self.clearance()?.closest()
     }
 
+    /// Whether a search of the outlines was given up, so that they may touch where no contact was found.
+    pub(crate) fn is_given_up(&self) -> bool {
+        let watched = self.watched.as_ref().and_then(|watched| watched.as_ref().ok());
+        watched.is_some_and(Watched::is_given_up)
+    }
+
     /// What there is to say of the clearance; nothing if it is that of the whole motion.
     pub(crate) fn clearance_notes(&self) -> Vec<ClearanceNote> {
         self.watched.as_ref().map_or_else(Vec::new, ClearanceNote::all)

@@ -85,6 +85,8 @@ pub struct Replay {
     film: Film,
     /// How near the bodies come, if that is watched and the run ends well.
     clearance: Option<Clearance>,
+    /// Whether outlines may touch where no contact was found.
+    given_up: bool,
     /// The table whose row it was held against.
     table: Held,
 }
@@ -177,6 +179,7 @@ impl Replay {
         let run = case.ended(scenario, result);
         simulation.push(&run, &mut own)?;
         let clearance = run.end().and_then(End::clearance).cloned();
+        let given_up = run.end().is_some_and(End::is_given_up);
         Ok(Self {
             own,
             history,
@@ -185,6 +188,7 @@ impl Replay {
             model: spec.name.clone(),
             case,
             clearance,
+            given_up,
             table: Held::Nowhere,
         })
     }

@@ -33,6 +33,18 @@ fn approach(shapes: &ShapeClearance) -> String {
     }
 }
 
+/// When outlines touch again, or until when they do not.
+fn recontact(found: Option<f64>, given_up: bool, until: Option<f64>, coast: f64) -> String {
+    match (found, given_up, until) {
+        (Some(time), ..) => format!("at {time:.9} s"),
+        (None, true, _) => {
+            "none found, and it is not known, for the search was given up".to_owned()
+        }
+        (None, false, Some(until)) => format!("none up to {until} s, and it is not known after"),
+        (None, false, None) => format!("none up to {coast} s after the last release"),
+    }
+}
+
 impl Display for Replay {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let (scenario, row) = (&self.scenario, self.row());
@@ -159,13 +171,9 @@ impl Display for Replay {
                     line(&format!("  {}", shapes(s)), approach(s), "")?;
                 }
             }
-            let touch = match (Quantity::RecontactTime.in_row(&row), clearance.undecided_from_s()) {
-                (Some(time), _) => format!("at {time:.9} s"),
-                (None, Some(until)) => format!("none up to {until} s, and it is not known after"),
-                (None, None) => {
-                    format!("none up to {} s after the last release", outlines.coast_s())
-                }
-            };
+            let found = Quantity::RecontactTime.in_row(&row);
+            let until = clearance.undecided_from_s();
+            let touch = recontact(found, self.given_up, until, outlines.coast_s());
             line("recontact", touch, "")?;
         }
         line("energy of the springs", value(Quantity::SpringEnergy), " J")?;
@@ -205,7 +213,25 @@ impl Replay {
 
 #[cfg(test)]
 mod tests {
+    use super::recontact;
     use crate::{Replay, Scenario};
+
+    /// That there is no contact is said only as far as the search has gone.
+    #[test]
+    fn no_contact_is_told_of_what_was_not_searched() {
+        for found in [None, Some(0.25)] {
+            for given_up in [false, true] {
+                for until in [None, Some(7.5)] {
+                    let told = recontact(found, given_up, until, 60.0);
+                    assert_eq!(told.starts_with("at 0.25"), found.is_some(), "{told}");
+                    let is_sure = found.is_none() && !given_up;
+                    assert_eq!(told.starts_with("none up to"), is_sure, "{told}");
+                    let end = if until.is_some() { "7.5" } else { "60" };
+                    assert_eq!(told.contains(end), is_sure, "{told}");
+                }
+            }
+        }
+    }
 
     /// Angles that a payload without spin does not have are left out with their units, whatever else the page tells.
     #[test]

@@ -196,6 +196,8 @@ fn every_search_that_was_given_up_is_told() {
     for pushed in [None, Some(11)] {
         for coast in [None, Some(None), Some(Some(13))] {
             let watched = Watched::of(found(pushed), coast.map(found));
+            let is_given_up = pushed.is_some() || coast.flatten().is_some();
+            assert_eq!(watched.is_given_up(), is_given_up, "{pushed:?} {coast:?}");
             let told = ClearanceNote::all(&Ok(watched));
             let told: Vec<_> =
                 told.into_iter().filter(|note| *note != ClearanceNote::Mated).collect();

@@ -136,6 +136,11 @@ impl Watched {
         is_stopped.then(|| self.pushed.looks())
     }
 
+    /// Whether a search was given up, so that the bodies may touch where no contact was found.
+    pub(crate) fn is_given_up(&self) -> bool {
+        self.clearance().is_stopped() || self.given_up_before().is_some()
+    }
+
     /// Where the bodies come nearer before the last release than they were when the clamp opened, and than they are after
     /// it, by more than that is known to.
     pub(crate) fn nearer_before(&self) -> Option<&Approach> {
