@@ -37,6 +37,8 @@ pub(crate) enum Alert {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         first: Option<(u64, String)>,
     },
+    /// The run without any dispersion failed.
+    NominalFailed { why: String },
     /// What is declared as dispersed is the same in all runs.
     Unmoved {
         model: String,
@@ -195,6 +197,12 @@ impl Alert {
                     .code("status")
                     .plain(" in the run table.")
             }
+            Self::NominalFailed { why } => Text::default()
+                .strong("The separation without any dispersion fails")
+                .plain(format!(
+                    ": {why}. So there are no outcomes of the nominal bodies but the wobble and the inertia ratio, which follow from \
+                     the inertia alone."
+                )),
             Self::Unmoved { .. } => return is_first().then(|| together::unmoved(all)),
             Self::FewValues { .. } => return is_first().then(|| together::few_values(all)),
             Self::Backwards { model, backwards, runs, outlines } => {
@@ -278,6 +286,8 @@ pub(crate) fn near_boundary(table: &Table, entries: &[impl AsRef<str>; 6]) -> [u
 
 mod together;
 
+#[cfg(test)]
+mod nominal_tests;
 #[cfg(test)]
 mod root_tests;
 #[cfg(test)]

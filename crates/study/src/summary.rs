@@ -209,7 +209,7 @@ impl Summary {
         every_model: Section,
     ) -> Result<Self, StatisticsError> {
         let confidence = Confidence::default();
-        let (nominal, rounding) = (nominal(scenario), scenario.rounding());
+        let ((nominal, nominal_failed), rounding) = (nominal(scenario), scenario.rounding());
         let models = models
             .par_iter()
             .zip(runs)
@@ -234,6 +234,7 @@ impl Summary {
             .iter()
             .zip(runs)
             .flat_map(|(model, seen)| model.alerts(scenario, seen, rounding));
+        let alerts = alerts.chain(nominal_failed);
         let alerts =
             alerts.chain(Alert::off_axis(scenario.payload().moving(), scenario.spin_axis()));
         let alerts = alerts.chain(scenario.off_nominal().into_iter().map(Alert::OffNominal));
@@ -279,17 +280,24 @@ fn all(scenario: &Scenario) -> impl IndexedParallelIterator<Item = Quantity> {
     Quantity::of(scenario.separation()).collect::<Vec<_>>().into_par_iter()
 }
 
-/// The run of the nominal bodies.
-fn nominal(scenario: &Scenario) -> Vec<Nominal> {
+/// The run of the nominal bodies, and that it failed, if it did: then what follows from the payload alone is known.
+fn nominal(scenario: &Scenario) -> (Vec<Nominal>, Option<Alert>) {
     let case = Case::nominal(scenario);
     let result = scenario.separation().run(scenario.settings());
     let run = case.ended(scenario, Some(result));
-    Quantity::of(scenario.separation())
-        .filter_map(|quantity| {
-            let value = quantity.value(&run).filter(|value| value.is_finite())?;
-            Some(Nominal { quantity, unit: quantity.unit().into(), value })
-        })
-        .collect()
+    let spin = scenario.payload().moving().spin_metrics(scenario.spin_axis());
+    let alone = [
+        (Quantity::Wobble, Some(spin.wobble().to_degrees())),
+        (Quantity::InertiaRatio, spin.inertia_ratio()),
+    ];
+    let of_payload = |quantity| alone.into_iter().find(|(own, _)| *own == quantity)?.1;
+    let told = Quantity::of(scenario.separation()).filter_map(|quantity| {
+        let value = quantity.value(&run).or_else(|| of_payload(quantity));
+        let value = value.filter(|value| value.is_finite())?;
+        Some(Nominal { quantity, unit: quantity.unit().into(), value })
+    });
+    let failed = run.failure().map(|why| Alert::NominalFailed { why: why.to_string() });
+    (told.collect(), failed)
 }
 
 fn dispersed(scenario: &Scenario, seen: &Seen) -> Vec<DispersedSummary> {

@@ -424,6 +424,7 @@ proptest! {
             Alert::Backwards { backwards, runs, .. } => ("backwards", format!("{backwards} of {runs}")),
             Alert::OffNominal(law) => ("off nominal", law.to_string()),
             Alert::OffAxis { angle_deg, .. } => ("off axis", angle_deg.to_string()),
+            Alert::NominalFailed { why } => ("nominal", why.clone()),
             Alert::Unmatched(law) => ("unmatched", law.to_string()),
         });
         prop_assert_eq!(told.collect::<Vec<_>>(), expected);
