@@ -314,6 +314,126 @@ def test_mujoco_refuses_a_body_that_is_compiled_as_simple():
         with_mujoco.apply(model, mujoco.MjData(model), draws({"arm": ARM}), 0)
 
 
+def fields(model) -> dict[str, np.ndarray]:
+    """All numbers of a model, by their names."""
+    parts = [("", model), ("stat.", model.stat), ("opt.", model.opt)]
+    named = ((first + name, getattr(part, name)) for first, part in parts for name in dir(part) if not name.startswith("_"))
+    return {name: np.array(value) for name, value in named if isinstance(value, (np.ndarray, int, float))}
+
+
+def changed(before: dict[str, np.ndarray], model) -> set[str]:
+    """Which numbers of a model are others than before."""
+    return {name for name, value in fields(model).items() if not np.array_equal(before[name], value)}
+
+
+OF_MASSES = {
+    *("body_mass", "body_ipos", "body_inertia", "body_iquat", "body_sameframe", "geom_sameframe", "site_sameframe", "bvh_aabb"),
+    *("body_subtreemass", "body_invweight0", "dof_invweight0", "dof_M0", "tendon_invweight0", "actuator_acc0", "dof_length"),
+    *("flexedge_invweight0", "cam_poscom0", "light_poscom0", "stat.meanmass", "stat.meaninertia"),
+    # The bounds of geoms, which MuJoCo 4 computes anew of their sizes.
+    *("geom_aabb", "geom_rbound"),
+}
+"""What a draw may change."""
+
+CLOTH = """<flexcomp name="cloth" type="grid" count="3 3 1" spacing=".1 .1 .1" mass="1" dim="2" radius=".01" pos="0 0 5"
+  quat="1 2 3 4"><edge equality="true"/></flexcomp>"""
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_mujoco_changes_what_depends_on_masses_alone(seed: int):
+    mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed")
+    import with_mujoco
+
+    rng = np.random.default_rng(seed)
+    numbers = rng.uniform(0.1, 2.0, 9)
+    model = mujoco.MjModel.from_xml_string(
+        MECHANISM.replace(
+            "<worldbody>", '<statistic extent="{}" meansize="{}" center="{} {} {}"/><worldbody>'.format(*numbers), 1
+        )
+        .replace("<equality>", '<equality><connect body1="tool" body2="plate" anchor=".1 .2 .3"/><connect site1="tip" site2="foot"/>')
+        .replace("</actuator>", '<position joint="elbow" kp="5" dampratio="1"/></actuator>')
+        .replace("</worldbody>", f"{CLOTH}</worldbody>")
+    )
+    drawn = draws({name: with_mujoco.nominal(model, name) for name in BODIES})
+    of_mass = {"body_mass", "body_inertia", "body_iquat", "body_ipos"}
+    # What a program may have set since the model was compiled.
+    for name, value in fields(model).items():
+        if value.dtype.kind == "f" and value.ndim > 0 and "." not in name and name not in of_mass and rng.uniform() < 0.7:
+            getattr(model, name)[...] = value * rng.uniform(0.9, 1.1, value.shape)
+    model.eq_data[:] += rng.uniform(0, 1, model.eq_data.shape)
+    model.actuator_biasprm[-1, 1:3] = -model.actuator_gainprm[-1, 0], rng.uniform(-1, 1)
+    model.tendon_lengthspring[:] = rng.choice([-1.0, 0.3])
+    for index in range(DRAWS):
+        before = fields(model)
+        with_mujoco.write(model, mujoco.MjData(model), drawn, index)
+        assert changed(before, model) <= OF_MASSES
+        assert of_mass <= changed(before, model)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_mujoco_computes_and_wakes_drawn_bodies_that_sleep(seed: int):
+    mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed")
+    import with_mujoco
+
+    if not with_mujoco.SLEEP:
+        pytest.skip("in this MuJoCo no body sleeps")
+    rng = np.random.default_rng(seed)
+    piles = [[f"box{place}{level}" for level in range(rng.integers(1, 4))] for place in range(4)]
+    names = [name for pile in piles for name in pile]
+
+    def pile(place: int, number: int) -> str:
+        """Boxes on each other, which fall asleep together, or are asleep from the beginning."""
+        sleep = rng.choice(["auto", "init"])
+        return "".join(
+            f'<body name="box{place}{level}" pos="{2 * place} 0 {0.199 * level + 0.099}" sleep="{sleep}"><freejoint/>'
+            f'<inertial pos="0 .01 -.02" mass="{number - level}" diaginertia=".01 .012 .015"/>'
+            '<geom type="box" size=".1 .1 .1"/><geom type="box" size=".01 .01 .05"/></body>'
+            for level in range(number)
+        )
+
+    bodies = "".join(pile(place, len(names)) for place, names in enumerate(piles))
+    text = f"""<mujoco><option><flag sleep="enable"/></option><worldbody><geom type="plane" size="99 9 .1"/>{bodies}
+<body name="still" pos="0 5 0"><inertial pos="0 0 .02" mass="1" diaginertia=".01 .01 .01"/></body>
+<body name="arm" pos="0 9 2"><joint axis="0 1 0"/><inertial pos="0.1 0 0" mass="1" diaginertia=".01 .02 .025"/></body>
+</worldbody></mujoco>"""
+    model = mujoco.MjModel.from_xml_string(text)
+    # The same model in which nothing sleeps.
+    restless = mujoco.MjModel.from_xml_string(text.replace('"enable"', '"disable"'))
+    data = mujoco.MjData(model)
+    for _ in range(rng.choice([0, 2000])):
+        mujoco.mj_step(model, data)
+    slept = data.tree_asleep >= 0
+    chosen = [name for name in [*names, "arm", "still"] if rng.uniform() < 0.3]
+    drawn = draws({name: with_mujoco.nominal(model, name) for name in chosen})
+    flags = model.opt.enableflags
+    before = fields(model)
+    with_mujoco.apply(model, data, drawn, 1)
+    assert model.opt.enableflags == flags
+    with_mujoco.write(restless, mujoco.MjData(restless), drawn, 1)
+    of_masses = OF_MASSES & set(before)
+    assert not changed({**before, **{name: fields(restless)[name] for name in of_masses}}, model)
+    for name in chosen:
+        at = data.body(name)
+        close(at.xipos, at.xpos + at.xmat.reshape(3, 3) @ drawn[name].centre[1])
+    # What wakes up is what was drawn, and what lies below and above it.
+    woken = {model.body_treeid[model.body(name).id] for pile in piles if {*pile} & {*chosen} for name in pile}
+    expected = np.array([one and tree not in woken for tree, one in enumerate(slept)])
+    np.testing.assert_array_equal(data.tree_asleep >= 0, expected)
+    # What a model computes in which nothing sleeps, of what moves.
+    every = mujoco.mjtState.mjSTATE_INTEGRATION
+    state = np.empty(mujoco.mj_stateSize(model, every))
+    mujoco.mj_getState(model, data, state, every)
+    other = mujoco.MjData(restless)
+    mujoco.mj_setState(restless, other, state, every)
+    mujoco.mj_forward(restless, other)
+    moves = ~expected[model.body_treeid] | (model.body_treeid < 0)
+    for name in ("xipos", "ximat", "cinert", "crb"):
+        np.testing.assert_array_equal(getattr(data, name)[1:][moves[1:]], getattr(other, name)[1:][moves[1:]], err_msg=name)
+    awake = ~expected[model.dof_treeid]
+    for name in ("qfrc_bias", "qacc_smooth"):
+        np.testing.assert_array_equal(getattr(data, name)[awake], getattr(other, name)[awake], err_msg=name)
+
+
 def test_mjx_has_the_drawn_bodies_in_each_environment():
     pytest.importorskip("mujoco.mjx", reason="MJX is not installed", exc_type=ImportError)
     import jax

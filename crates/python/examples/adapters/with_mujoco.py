@@ -2,9 +2,34 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from operator import attrgetter
+
 import gyradius
 import mujoco
 import numpy as np
+
+KEPT = (
+    "eq_data",
+    "tendon_length0",
+    "tendon_lengthspring",
+    "actuator_length0",
+    "actuator_biasprm",
+    "cam_pos0",
+    "cam_mat0",
+    "light_pos0",
+    "light_dir0",
+    "flexedge_length0",
+    "stat.center",
+    "stat.extent",
+    "stat.meansize",
+)
+"""What `mj_setConst` computes in the reference configuration although it does not depend on masses: a program may have set it since the
+model was compiled, such as the anchors of a grasp, or the file may state it."""
+
+SLEEP = int(getattr(mujoco.mjtEnableBit, "mjENBL_SLEEP", 0))
+"""The flag by which bodies at rest may sleep, which older versions lack."""
 
 
 def compile_movable(spec: mujoco.MjSpec) -> mujoco.MjModel:
@@ -31,7 +56,7 @@ def write(model: mujoco.MjModel, scratch: mujoco.MjData, draws: dict[str, gyradi
     """Put draw `index` of the bodies, by their names, into a model, and update the constants that MuJoCo derives from it.
 
     MuJoCo computes these constants in the model's reference configuration, and leaves `scratch` in it: give data whose
-    state nobody needs.
+    state nobody needs. Of the model, only what depends on the masses changes.
 
     Raises
     ------
@@ -50,8 +75,23 @@ def write(model: mujoco.MjModel, scratch: mujoco.MjData, draws: dict[str, gyradi
         model.body_sameframe[body] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE
         model.geom_sameframe[model.geom_bodyid == body] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE
         model.site_sameframe[model.site_bodyid == body] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE
-    mujoco.mj_setConst(model, scratch)
-    fit_boxes(model, scratch, np.array(list(drawn), dtype=int))
+    kept = [(*name.rpartition(".")[::2], np.copy(attrgetter(name)(model))) for name in KEPT]
+    with nothing_asleep(model):
+        mujoco.mj_setConst(model, scratch)
+        fit_boxes(model, scratch, np.array(list(drawn), dtype=int))
+    for owner, name, value in kept:
+        setattr(attrgetter(owner)(model) if owner else model, name, value)
+
+
+@contextmanager
+def nothing_asleep(model: mujoco.MjModel) -> Iterator[None]:
+    """While this holds, MuJoCo computes all bodies, also those that sleep."""
+    flags = model.opt.enableflags
+    model.opt.enableflags &= ~SLEEP
+    try:
+        yield
+    finally:
+        model.opt.enableflags = flags
 
 
 def fit_boxes(model: mujoco.MjModel, data: mujoco.MjData, bodies: np.ndarray) -> None:
@@ -84,7 +124,17 @@ def fit_boxes(model: mujoco.MjModel, data: mujoco.MjData, bodies: np.ndarray) ->
 def apply(model: mujoco.MjModel, data: mujoco.MjData, draws: dict[str, gyradius.MassProperties], index: int) -> None:
     """Put draw `index` of the bodies into a model, as `write` does, and compute anew what `data` holds of its own state.
 
-    The state itself stays: positions, velocities, activations, controls, forces, mocap bodies and time.
+    The state itself stays: positions, velocities, activations, controls, forces, mocap bodies and time. Only what is drawn wakes up if it
+    was asleep, and what sleeps with it, for a body with another mass centre may fall.
     """
-    write(model, mujoco.MjData(model), draws, index)
+    scratch = mujoco.MjData(model)
+    write(model, scratch, draws, index)
+    if SLEEP:
+        bodies = np.array([model.body(name).id for name in draws], dtype=int)
+        trees = model.body_treeid[bodies]
+        # As MuJoCo marks what was moved in its sleep: it wakes such a tree, and all that fell asleep with it.
+        data.tree_awake[trees[trees >= 0]] = 1
+        # Bodies that cannot move are placed when data is made, and never again.
+        still = bodies[trees < 0]
+        data.xipos[still], data.ximat[still] = scratch.xipos[still], scratch.ximat[still]
     mujoco.mj_forward(model, data)
