@@ -7,6 +7,7 @@ spatial inertias and momenta that the library computes, beside the same from the
 from __future__ import annotations
 
 import importlib
+import itertools
 import sys
 import types
 from pathlib import Path
@@ -305,13 +306,38 @@ def test_mujoco_finds_the_contacts_and_rays_of_drawn_bodies_with_any_geoms(seed:
     assert number > 40
 
 
-def test_mujoco_refuses_a_body_that_is_compiled_as_simple():
+SIMPLE = """<mujoco><worldbody>
+<body name="first" pos="0 0 1"><joint axis="0 1 0"/><inertial pos=".1 0 0" mass="1" diaginertia="1 2 2.5"/></body>
+<body name="free" pos="3 0 1"><freejoint/><inertial pos="0 0 0" mass="1" diaginertia="1 1.2 1.5"/></body>
+<body name="ball" pos="6 0 1"><freejoint/><geom size=".1"/></body>
+<body name="cart" pos="9 0 1"><joint type="slide" axis="1 0 0"/><inertial pos="0 0 0" mass="1" diaginertia="2 1 2.5"/></body>
+</worldbody></mujoco>"""
+
+
+@pytest.mark.parametrize("name", ["free", "ball", "cart"])
+@pytest.mark.parametrize("what", [key for count in range(1, 5) for key in itertools.combinations(STATED, count)])
+def test_mujoco_refuses_a_body_that_is_compiled_as_simple_only_if_its_frame_is_drawn(name: str, what: tuple[str, ...]):
     mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed")
     import with_mujoco
 
-    model = mujoco.MjModel.from_xml_string(MJCF)
-    with pytest.raises(ValueError, match="body arm: it is compiled as simple"):
-        with_mujoco.apply(model, mujoco.MjData(model), draws({"arm": ARM}), 0)
+    model = mujoco.MjModel.from_xml_string(SIMPLE)
+    data = mujoco.MjData(model)
+    stated = {key: STATED[key] for key in what}
+    drawn = {one: gyradius.law(with_mujoco.nominal(model, one), **stated).rvs(DRAWS, rng=1) for one in ("first", name)}
+    # A body with three equal moments has no axes that could turn, unless its moments scatter too.
+    turns = "axes" in what and (name != "ball" or "moments" in what)
+    before = fields(model)
+    for index in range(DRAWS):
+        if "centre" in what or turns:
+            with pytest.raises(ValueError, match=f"body {name}: it is compiled as simple"):
+                with_mujoco.apply(model, data, drawn, index)
+            assert not changed(before, model)
+            continue
+        with_mujoco.apply(model, data, drawn, index)
+        matrix = mass_matrix(mujoco, model, data)
+        dofs = matrix[np.ix_(*2 * [np.arange(model.nv)[model.dof_bodyid == model.body(name).id]])]
+        body = drawn[name][index]
+        close(dofs, spatial(body.mass, body.centre, body.inertia)[: len(dofs), : len(dofs)])
 
 
 def fields(model) -> dict[str, np.ndarray]:

@@ -61,15 +61,20 @@ def write(model: mujoco.MjModel, scratch: mujoco.MjData, draws: dict[str, gyradi
     Raises
     ------
     ValueError
-        If a body is compiled as simple, so that its mass centre cannot leave its origin: see `compile_movable`.
+        If a body is compiled as simple, and its mass centre would leave its origin or its principal axes would turn: see
+        `compile_movable`. The model is then as it was.
     """
-    drawn = {model.body(name).id: bodies for name, bodies in draws.items()}
-    for body, bodies in drawn.items():
-        if model.body_simple[body]:
+    drawn = {model.body(name).id: bodies[index].to_mujoco() for name, bodies in draws.items()}
+    for body, values in drawn.items():
+        frame = *values.body_ipos, *np.abs(values.body_iquat)
+        # To as much as MuJoCo itself takes for equal.
+        if model.body_simple[body] and not np.allclose(frame, [0, 0, 0, 1, 0, 0, 0], rtol=0, atol=1e-6):
             raise ValueError(
-                f"body {model.body(body).name}: it is compiled as simple, so its mass centre cannot move: see compile_movable"
+                f"body {model.body(body).name}: it is compiled as simple, so its mass centre must stay at its origin, and its principal "
+                f"axes along its own, and the draw has body_ipos = {values.body_ipos} and body_iquat = {values.body_iquat}: see compile_movable"
             )
-        for field, value in bodies[index].to_mujoco()._asdict().items():
+    for body, values in drawn.items():
+        for field, value in values._asdict().items():
             getattr(model, field)[body] = value
         # The frame of the inertia may have been that of the body, of a geom or of a site. It is no longer.
         model.body_sameframe[body] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE
