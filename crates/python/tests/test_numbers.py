@@ -135,6 +135,54 @@ def test_what_is_no_number_is_named_as_it_was_given(label: str, name: str, wrong
         function(**{**given, name: wrong})
 
 
+class InUnits(np.ndarray):
+    """An array with a unit of its own, as astropy has them."""
+
+    unit: str | None = "cm"
+
+
+class Held:
+    """Numbers with a unit, as pint has them."""
+
+    def __init__(self, value: Any) -> None:
+        self.magnitude = np.asarray(value, dtype=float)
+
+    @property
+    def units(self) -> str:
+        return "cm"
+
+    def __array__(self, dtype: object = None, copy: object = None) -> np.ndarray:
+        return self.magnitude
+
+
+def of_instance(value: Any) -> Any:
+    """An array of which only the object has a unit, as unyt has them."""
+
+    class Unyt(np.ndarray):
+        pass
+
+    array = np.asarray(value, dtype=float).view(Unyt)
+    array.units = "cm"  # type: ignore[attr-defined]
+    return array
+
+
+@pytest.mark.parametrize(("label", "name"), [(label, name) for label, name, _ in TAKERS])
+@pytest.mark.parametrize("kind", [lambda value: np.asarray(value, dtype=float).view(InUnits), Held, of_instance])
+@pytest.mark.parametrize("within", [lambda one: one, lambda one: [one], lambda one: ([one, one],)])
+def test_numbers_with_a_unit_are_refused(label: str, name: str, kind: Callable[[Any], Any], within: Callable[[Any], Any]) -> None:
+    function, given = GOOD[label]
+    value = getattr(given[name], "array", given[name])
+    with pytest.raises(ValueError, match=f"^{name}( = .*)?: it has the unit cm, and it must be plain numbers, in units of SI"):
+        function(**{**given, name: within(kind(value))})
+
+
+def test_tables_with_a_column_of_units_have_no_unit() -> None:
+    pandas = pytest.importorskip("pandas")
+    for name in ("unit", "units"):
+        table = pandas.DataFrame({name: [1.0, 2.0]})
+        assert (gyradius.normal(0.0, 1.0).cdf(table) == gyradius.normal(0.0, 1.0).cdf([[1.0], [2.0]])).all()
+
+
 @pytest.mark.parametrize("wrong", [np.nan, np.inf, -np.inf])
 @pytest.mark.parametrize("place", range(3))
 @pytest.mark.parametrize(

@@ -78,8 +78,8 @@ def frozen(array: A) -> A:
 
 
 def unmasked(name: str, value: Any, *, of_bodies: bool = False) -> None:
-    """Refuses what NumPy would make wrong numbers of: masked entries, of which it takes what stands behind the mask, and, unless bodies are
-    asked for, bodies, of which it takes the ten numbers for any others."""
+    """Refuses what NumPy would make wrong numbers of: masked entries, of which it takes what stands behind the mask, quantities, of which it
+    leaves the unit away, and, unless bodies are asked for, bodies, of which it takes the ten numbers for any others."""
     if isinstance(value, (list, tuple)):
         for one in value:
             # Most are numbers, and there may be millions of them.
@@ -90,6 +90,12 @@ def unmasked(name: str, value: Any, *, of_bodies: bool = False) -> None:
     elif not of_bodies and getattr(type(value), "__array_ufunc__", value) is None:
         # By which a type says to NumPy that its objects are no arrays to compute with.
         raise ValueError(f"{name}: it must be numbers, not {type(value).__name__}")
+    else:
+        # Arrays may have a unit of their own; of tables only the type tells, since their columns are attributes too.
+        of = value if isinstance(value, np.ndarray) else type(value)
+        for unit in ("unit", "units"):
+            if hasattr(of, unit):
+                raise ValueError(f"{name}: it has the unit {getattr(value, unit)}, and it must be plain numbers, in units of SI")
 
 
 def own_numbers(name: str, value: ArrayLike, *, of_bodies: bool = False) -> NDArray[Any]:
