@@ -38,6 +38,14 @@ FORMS: dict[str, tuple[str, ...]] = {
 LOG_CHOLESKY = ("α", "d₁", "d₂", "d₃", "s₁₂", "s₂₃", "s₁₃", "t₁", "t₂", "t₃")
 """What the ten log-Cholesky coordinates are called."""
 
+NAMED = {*FORMS["natural"], *FORMS["linear"], *LOG_CHOLESKY}
+"""All names of numbers of bodies."""
+
+MASS, CENTRE, INERTIA = NATURAL[:1], NATURAL[1:4], NATURAL[4:]
+
+CALLED = {(): MASS, (3,): CENTRE, (6,): INERTIA, (10,): NATURAL, (3, 3): INERTIA, (6, 6): INERTIA, (10, 10): NATURAL}
+"""What numbers are called that stand in arrays of such a shape, unless others are asked for; those of other shapes have no names of ours."""
+
 SINGLE = np.dtype(np.float32)
 """Floats of 32 bits."""
 
@@ -98,8 +106,12 @@ def unmasked(name: str, value: Any, *, of_bodies: bool = False) -> None:
                 raise ValueError(f"{name}: it has the unit {getattr(value, unit)}, and it must be plain numbers, in units of SI")
 
 
-def own_numbers(name: str, value: ArrayLike, *, of_bodies: bool = False) -> NDArray[Any]:
-    """The value as an array of real numbers of the type that it has."""
+def own_numbers(
+    name: str, value: ArrayLike, *, order: Sequence[str] | None = None, of_bodies: bool = False
+) -> NDArray[Any]:
+    """The value as an array of real numbers of the type that it has; of numbers that are called so, if they have names of ours."""
+    if order is not None:
+        _own_order(name, value, order)
     unmasked(name, value, of_bodies=of_bodies)
     try:
         array = np.asarray(value)
@@ -124,19 +136,20 @@ def is_single(array: NDArray[Any]) -> bool:
     return array.dtype.kind == SINGLE.kind and array.dtype.itemsize == SINGLE.itemsize
 
 
-def numbers(name: str, value: ArrayLike, *, of_bodies: bool = False) -> NDArray[np.float64]:
-    """The value as an array of aligned 64-bit floats, without a copy where it is one."""
-    array = own_numbers(name, value, of_bodies=of_bodies)
+def numbers(
+    name: str, value: ArrayLike, *, order: Sequence[str] | None = None, of_bodies: bool = False
+) -> NDArray[np.float64]:
+    """The value as an array of aligned 64-bit floats, without a copy where it is one: see `own_numbers`."""
+    array = own_numbers(name, value, order=order, of_bodies=of_bodies)
     # What stands at odd addresses, as a field of packed records does, the compiled part cannot read.
     return np.require(array.astype(np.float64, copy=False), requirements="A")
 
 
 def rows(
-    name: str, value: ArrayLike, tail: tuple[int, ...], *, order: Sequence[str] = NATURAL, of_bodies: bool = False
+    name: str, value: ArrayLike, tail: tuple[int, ...], *, order: Sequence[str] | None = None, of_bodies: bool = False
 ) -> tuple[NDArray[np.float64], tuple[int, ...]]:
-    """An array of shape (..., *tail) as rows, and what the dots stand for; of numbers that are called so, if they have names of ours."""
-    own_order(name, value, order)
-    array = numbers(name, value, of_bodies=of_bodies)
+    """An array of shape (..., *tail) as rows, and what the dots stand for: see `own_numbers`."""
+    array = numbers(name, value, order=CALLED.get(tail, ()) if order is None else order, of_bodies=of_bodies)
     if array.shape[array.ndim - len(tail) :] != tail or array.ndim < len(tail):
         wanted = ", ".join(["...", *map(str, tail)])
         raise ValueError(f"{name}: its shape is {array.shape}, and it must be ({wanted})")
@@ -144,14 +157,16 @@ def rows(
     return np.ascontiguousarray(array).reshape(-1, int(np.prod(tail))), lead
 
 
-def own_order(name: str, value: ArrayLike, order: Sequence[str] = NATURAL) -> None:
-    """Refuses numbers whose names are those of the ten numbers of a body, if they are others or stand in another order."""
-    for named in names_of(value):
-        if not set(named) <= set(FORMS["natural"]) | set(FORMS["linear"]):
+def _own_order(name: str, value: ArrayLike, order: Sequence[str]) -> None:
+    """Refuses numbers whose names are those of numbers of bodies, if they are others or stand in another order."""
+    # One column of a table has a name of its own.
+    alone = getattr(value, "name", None)
+    for named in (*names_of(value), *([[alone]] if isinstance(alone, str) else [])):
+        if not NAMED.issuperset(named):
             continue
         strange = [one for one in named if one not in order]
         if strange:
-            raise ValueError(f"{name}: {strange[0]} is none of its numbers, which are {', '.join(order)}")
+            raise ValueError(f"{name}: {strange[0]} is none of its numbers" + (f", which are {', '.join(order)}" if order else ""))
         right = [one for one in order if one in named]
         if named != right:
             known = "gyradius.COLUMNS, as in table[list(gyradius.COLUMNS)]" if right == list(NATURAL) else ", ".join(right)

@@ -14,6 +14,8 @@ import numpy as np
 
 from gyradius import _core
 from gyradius._arrays import (
+    CENTRE,
+    INERTIA,
     LOG_CHOLESKY,
     NATURAL,
     SINGLE,
@@ -28,7 +30,6 @@ from gyradius._arrays import (
     ordered,
     out,
     own_numbers,
-    own_order,
     rows,
     together,
 )
@@ -100,7 +101,7 @@ class MassProperties:
     _array: NDArray[np.float64]
 
     def __init__(self, mass: ArrayLike, centre: ArrayLike, inertia: ArrayLike) -> None:
-        given = own_numbers("inertia", inertia)
+        given = own_numbers("inertia", inertia, order=INERTIA)
         parts, lead = together(("mass", mass, ()), ("centre", centre, (3,)), ("inertia", given, (3, 3)))
         if is_single(given):
             parts[2] = of_rounded(parts[2].reshape(-1, 3, 3)).reshape(-1, 9)
@@ -134,7 +135,7 @@ class MassProperties:
         Far from the point the rounding of what is given, 1.4e-14 of its trace in 64 bits, is much of the inertia about the mass centre: what
         lies outside of what bodies have by no more than this is replaced by the nearest that some body has.
         """
-        given = own_numbers("inertia", inertia)
+        given = own_numbers("inertia", inertia, order=INERTIA)
         known = ("mass", mass, ()), ("centre", centre, (3,)), ("inertia", given, (3, 3)), ("point", point, (3,))
         (m, c, i, p), lead = together(*known)
         # What is not finite, or becomes so, is no body, of which `is_realizable` tells.
@@ -423,14 +424,14 @@ def ellipsoid(
 
 def hull(points: ArrayLike) -> Region:
     """The convex hull of points in m, shape (n, 3), such as the vertices of a mesh."""
-    array = numbers("points", points)
+    array = numbers("points", points, order=CENTRE)
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"points: its shape is {array.shape}, and it must be (n, 3)")
     return Region({"hull": {"points_m": array.tolist()}})
 
 
 def _three(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    array = numbers(name, value)
+    array = numbers(name, value, order=CENTRE)
     if array.shape not in ((), (3,)):
         raise ValueError(f"{name}: its shape is {array.shape}, and it must be (3,)")
     array = np.broadcast_to(array, (3,))
@@ -503,9 +504,7 @@ def log_cholesky(bodies: MassProperties | ArrayLike) -> NDArray[np.float64]:
 
 def body_rows(name: str, bodies: MassProperties | ArrayLike) -> tuple[NDArray[np.float64], tuple[int, ...]]:
     """The ten numbers of bodies as rows, of floats of 32 bits with what `of_rounded` makes of the inertias, and the shape of the bodies."""
-    # An array has no names any more.
-    own_order(name, bodies)
-    given = own_numbers(name, bodies, of_bodies=True)
+    given = own_numbers(name, bodies, order=NATURAL, of_bodies=True)
     flat, lead = rows(name, given, (10,))
     if is_single(given):
         rounded = of_rounded(flat[:, MATRIX].reshape(-1, 3, 3))

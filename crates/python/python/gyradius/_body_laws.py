@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import LOG_CHOLESKY, form, listed, mapping, numbers, out, real, rows, same_names, text, three
+from gyradius._arrays import CENTRE, LOG_CHOLESKY, form, listed, mapping, numbers, out, real, rows, same_names, text, three
 from gyradius._attitude_laws import AttitudeLaw
 from gyradius._bodies import MassProperties, Region, body_rows
 from gyradius._inertia_laws import InertiaLaw
@@ -158,7 +158,7 @@ class MassPropertiesLaw(LawOfBodies):
         if inside is not None:
             of_kind("inside", inside, Region)
         region = None if inside is None else json.dumps(inside.form)
-        each = numbers("centre_std", centre_std)
+        each = numbers("centre_std", centre_std, order=CENTRE)
         centre = vector("centre_std", np.broadcast_to(each, (3,)) if each.ndim == 0 else each, 3)
         deltas = real("mass_delta", mass_delta), real("delta", delta)
         return make(MassPropertiesLaw, "maximum_entropy", ten_of("mean", mean), deltas[0], centre, deltas[1], region)

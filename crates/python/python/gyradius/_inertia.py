@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import SINGLE, ordered, out, own_numbers, real, rows, text
+from gyradius._arrays import INERTIA, SINGLE, ordered, out, own_numbers, real, rows, text
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -45,7 +45,7 @@ def is_realizable(inertia: ArrayLike, tolerance: Real | None = None) -> Any:
     >>> gyradius.is_realizable([np.diag([1.0, 2.0, 3.1]), np.diag([1.0, 1.0, 1.0])])
     array([False,  True])
     """
-    given = own_numbers("inertia", inertia)
+    given = own_numbers("inertia", inertia, order=INERTIA)
     flat, lead = rows("inertia", given, (3, 3))
     found = out(_core.inertia_is_realizable(flat, _tolerance(tolerance, given.dtype)), lead)
     return bool(found) if lead == () else found
@@ -119,7 +119,7 @@ def report(inertia: ArrayLike, tolerance: Real | None = None) -> Report:
     >>> print(gyradius.report(np.diag([1.0, 2.0, 3.3])))
     not realizable: I33 = 3.3 kg·m² exceeds the sum of the others, 1 + 2 kg·m², by 10.00 %
     """
-    given = own_numbers("inertia", inertia)
+    given = own_numbers("inertia", inertia, order=INERTIA)
     flat, lead = rows("inertia", given, (3, 3))
     allowed = _tolerance(tolerance, given.dtype)
     # In pieces, between which Python sees an interrupt.

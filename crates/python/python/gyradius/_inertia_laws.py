@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import form, is_single, mapping, out, own_numbers, rows, same_names, text, three
+from gyradius._arrays import INERTIA, form, is_single, mapping, out, own_numbers, rows, same_names, text, three
 from gyradius._attitude_laws import AttitudeLaw
 from gyradius._inertia import of_rounded
 from gyradius._law import Fit, LawOfBodies, Matrix, known, make, of_kind, picture, short, vector
@@ -133,7 +133,7 @@ class InertiaLaw(LawOfBodies):
     @staticmethod
     def fit(inertia: ArrayLike) -> Fit[InertiaLaw]:
         """The law of Peck (2003) of samples (n, 3, 3), of 13 bodies or more."""
-        given = own_numbers("inertia", inertia)
+        given = own_numbers("inertia", inertia, order=INERTIA)
         flat, _ = rows("inertia", given, (3, 3))
         if is_single(given):
             flat = of_rounded(flat.reshape(-1, 3, 3)).reshape(-1, 9)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import NATURAL, attitudes, rows
+from gyradius._arrays import attitudes, rows
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -124,14 +124,14 @@ class Matrix(tuple):  # type: ignore[type-arg]
     __slots__ = ()
 
     @classmethod
-    def of(cls, name: str, value: ArrayLike, shape: tuple[int, ...], *, order: Sequence[str] = NATURAL) -> Matrix:
+    def of(cls, name: str, value: ArrayLike, shape: tuple[int, ...], *, order: Sequence[str] | None = None) -> Matrix:
         flat, lead = rows(name, value, shape, order=order)
         if lead != ():
             raise ValueError(f"{name}: its shape is {np.shape(value)}, and it must be {shape}")
         return cls(map(tuple, flat.reshape(shape).tolist()))
 
 
-def vector(name: str, value: ArrayLike, size: int, *, order: Sequence[str] = NATURAL) -> tuple[float, ...]:
+def vector(name: str, value: ArrayLike, size: int, *, order: Sequence[str] | None = None) -> tuple[float, ...]:
     """One vector of so many numbers, which are called so, if they have names of ours."""
     flat, lead = rows(name, value, (size,), order=order)
     if lead != ():
