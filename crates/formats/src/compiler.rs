@@ -56,6 +56,11 @@ pub enum CompilerDoubt {
         /// The attribute.
         told: String,
     },
+    /// It computes stiffness or damping of an MJCF file from the masses when it loads it.
+    Damped {
+        /// The attribute.
+        told: String,
+    },
     /// An MJCF file has `coordinate="global"`. MuJoCo no longer loads such a file, and took places and axes for those of the
     /// world before.
     Global,
@@ -106,6 +111,11 @@ impl fmt::Display for CompilerDoubt {
                 "the file has {told}: MuJoCo gives bodies other frames or merges them with their parents. Copies of the file are right, but \
                  numbers in the frames of the file must not be set on its bodies as they are"
             ),
+            Self::Damped { told } => write!(
+                f,
+                "the file has {told}, by which MuJoCo computes a damping, or a stiffness, from the masses when it loads a file. Each copy has that of its \
+                 drawn masses, and a model that is drawn after it was loaded keeps that of the file"
+            ),
             Self::Global => f.write_str(
                 "the file has coordinate=\"global\", which MuJoCo no longer loads: its places and axes are read here as those of \
                  the bodies, and were those of the world",
@@ -149,6 +159,7 @@ pub(crate) fn doubts(tree: &Tree<'_>, format: Format) -> Vec<CompilerDoubt> {
             let global = said(tree, "coordinate").filter(|(_, told)| *told == "global");
             let framed = framed(tree).map(|told| CompilerDoubt::Framed { told });
             let all = raised.chain(replicated).chain(attached).chain(unplaced).chain(framed);
+            let all = all.chain(damped(tree));
             let all = all.chain(global.map(|_| CompilerDoubt::Global));
             all.chain(includes.then_some(CompilerDoubt::Included)).collect()
         }
@@ -211,6 +222,16 @@ fn framed(tree: &Tree<'_>) -> Option<String> {
     let aligned = said(tree, "alignfree").filter(is_true);
     let aligned = aligned.filter(|_| aligns.iter().any(|align| *align != Some("false")));
     aligned.or_else(|| said(tree, "fusestatic").filter(is_true)).map(written)
+}
+
+/// Of each attribute that makes stiffness or damping depend on masses the first that does, of a motor, of a joint or of their defaults.
+fn damped<'a>(tree: &'a Tree<'_>) -> impl Iterator<Item = CompilerDoubt> + 'a {
+    ["dampratio", "springdamper"].into_iter().filter_map(|name| {
+        let is_positive = |number: &str| number.parse().is_ok_and(|number: f64| number > 0.0);
+        let mut all = tree.nodes().filter_map(|node| node.attribute(name));
+        let told = all.find(|told| told.split_whitespace().any(is_positive))?;
+        Some(CompilerDoubt::Damped { told: written((name, told.trim())) })
+    })
 }
 
 /// An attribute of the compiler and its value.

@@ -94,6 +94,40 @@ proptest! {
         prop_assert_eq!(found.len(), usize::from(include));
     }
 
+    /// With MuJoCo 4.0.0 the damping of a motor with `dampratio`, and the stiffness and damping of a joint with `springdamper`, grow with the
+    /// mass, also by a default, unless they are zero.
+    #[test]
+    fn damping_that_follows_the_masses_is_told(parts in prop::collection::vec((0..5_usize, select(vec!["0", "0.7", "1"])), 0..5)) {
+        let mut places = ["", "", ""].map(String::from);
+        let mut told = [None, None];
+        for (part, value) in parts {
+            let (place, text, name, value) = match part {
+                0 => (0, "<default><position dampratio='?'/></default>", 0, value.to_owned()),
+                1 => (0, "<default><joint springdamper='?'/></default>", 1, format!("{value} {value}")),
+                2 => (1, "<joint springdamper='?'/>", 1, format!("{value}  {value}")),
+                3 => (2, "<position joint='j' kp='9' dampratio='?'/>", 0, value.to_owned()),
+                _ => (2, "<intvelocity joint='j' kp='9' dampratio=' ? '/>", 0, value.to_owned()),
+            };
+            places[place] += &text.replace('?', &value);
+            if value.split_whitespace().any(|number| number != "0") {
+                // The first in the file counts, and defaults stand before joints, and these before motors.
+                let first: &mut Option<(usize, String)> = &mut told[name];
+                if first.as_ref().is_none_or(|(other, _)| place < *other) {
+                    *first = Some((place, value));
+                }
+            }
+        }
+        let [defaults, joints, motors] = places;
+        let text = format!(
+            "<mujoco><default>{defaults}</default><worldbody><body name='a'>{joints}<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/></body></worldbody>\
+             <actuator>{motors}</actuator></mujoco>"
+        );
+        let expected: Vec<_> = ["dampratio", "springdamper"].into_iter().zip(told).filter_map(|(name, told)| {
+            Some(CompilerDoubt::Damped { told: format!("{name}=\"{}\"", told?.1) })
+        }).collect();
+        prop_assert_eq!(doubts("r.xml", &text), expected);
+    }
+
     /// In SDF, populations and added masses of a fluid.
     #[test]
     fn several_models_of_one_and_added_masses_are_told(
