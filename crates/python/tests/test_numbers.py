@@ -372,6 +372,15 @@ def test_numbers_that_stand_in_a_table_of_objects_are_taken(dtype: Any, entry: A
             cdf(table)
 
 
+@given(st.lists(st.integers(-(10**30), 10**30) | st.booleans() | st.floats(-1e30, 1e30), min_size=1), st.booleans())
+def test_whole_numbers_of_any_length_are_the_nearest_floats(some: list[Any], alone: bool) -> None:
+    value = some[0] if alone else some
+    cdf = gyradius.normal(0.0, 1e20).cdf
+    assert np.array_equal(cdf(value), cdf(np.array(list(map(float, some)))[0 if alone else ...]))
+    with pytest.raises(ValueError, match="^x: it must be numbers: "):
+        cdf([value, 10**400] if alone else [*value, 10**400])
+
+
 def test_tables_of_pandas_that_may_lack_entries_are_tables() -> None:
     pandas = pytest.importorskip("pandas")
     table = pandas.DataFrame(MANY.array, columns=list(gyradius.COLUMNS)).convert_dtypes()

@@ -116,12 +116,13 @@ def own_numbers(
     try:
         array = np.asarray(value)
         if array.dtype == object and not isinstance(value, np.ndarray):
-            # NumPy makes objects of the numbers of tables whose columns may lack entries.
+            # NumPy makes objects of the numbers of tables whose columns may lack entries, and of long whole numbers.
             kinds = set(map(type, array.flat)) or {float}
             strange = [kind for kind in kinds if not issubclass(kind, (float, int, np.floating, np.integer))]
             if strange:
                 raise TypeError(f"it has a {strange[0].__name__}")
-            array = array.astype(np.result_type(*kinds))
+            # Python's whole numbers may be too large for those of NumPy.
+            array = array.astype(np.result_type(*(float if issubclass(kind, int) else kind for kind in kinds)))
     except (TypeError, ValueError, OverflowError) as error:
         raise ValueError(f"{name}: it must be numbers: {error}") from None
     if array.dtype.kind not in "biufc":

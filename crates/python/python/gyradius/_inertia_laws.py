@@ -80,8 +80,8 @@ class InertiaLaw(LawOfBodies):
     def matched(kind: str, mean: ArrayLike, cov: ArrayLike) -> InertiaLaw:
         """The model of a kind whose six entries have this mean (6,) and covariance (6, 6), as far as the kind can.
 
-        `correlated-entries` has them, and `log-cholesky` where such a law is found: of the widest spreads none is, and a `RuntimeWarning`
-        tells of the law to first order that is taken in its place. What the other kinds have is seen in `mean` and `cov`.
+        `correlated-entries` has them, and `log-cholesky` where such a law is found: of the widest spreads none is, nor of covariances that are
+        nearly singular, and a `RuntimeWarning` tells of the law to first order that is taken in its place. What the other kinds have is seen in `mean` and `cov`.
         """
         same_names(mean=mean, cov=cov)
         sought = vector("mean", mean, 6)
