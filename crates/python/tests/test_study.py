@@ -11,6 +11,7 @@ import sys
 import textwrap
 import threading
 import time
+import types
 import warnings
 from pathlib import Path
 from typing import Any
@@ -176,6 +177,38 @@ def test_wrong_answers_are_rows(answer: Any, reason: str) -> None:
     table = study.to_numpy()["all"]
     assert [run for run, status in enumerate(table["status"]) if status != "ok"] == [3]
     assert reason in table["status"][3]
+
+
+class OfOthers:
+    """A number of a type that another library has given to NumPy, as bfloat16 of JAX."""
+
+    def __init__(self, value: float, kind: str, char: str) -> None:
+        self.value = value
+        self.dtype = types.SimpleNamespace(kind=kind, char=char)
+
+    def __float__(self) -> float:
+        return self.value
+
+
+@pytest.mark.parametrize("dtype", ["?", *np.typecodes["AllInteger"], *np.typecodes["AllFloat"], "M8[s]", "m8[s]", "S3", "U3", "V3", "O", [("a", float)]])
+@pytest.mark.parametrize("scalar", [True, False])
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_answers_are_taken_of_real_types_alone(dtype: Any, scalar: bool) -> None:
+    number = np.zeros((), dtype)
+    if number.dtype.kind in "SUV" and number.dtype.names is None:
+        number = np.frombuffer("1.5".encode("utf-32-le" if number.dtype.kind == "U" else "ascii"), dtype)[0]
+    study = gyradius.study(scenario(), lambda inputs: {"y": number[()] if scalar else np.array(number)}, outputs={"y": "m"})
+    # An object is whatever it holds.
+    is_taken = number.dtype.kind in "biuf" or number.dtype.kind == "O" and scalar
+    assert (study.failed["all"] == 0) == is_taken
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+@pytest.mark.parametrize(("kind", "char", "is_taken"), [("V", "E", True), ("V", "4", True), ("f", "5", True), ("V", "V", False), ("c", "F", False)])
+def test_answers_may_be_numbers_of_types_of_others(kind: str, char: str, is_taken: bool) -> None:
+    study = gyradius.study(scenario(), lambda inputs: {"y": OfOthers(1.5, kind, char)}, outputs={"y": "m"})
+    found = study.to_numpy()["all"]["y"]
+    assert (found == 1.5).all() if is_taken else np.isnan(found).all()
 
 
 def test_outputs_are_declared_by_the_first_answer() -> None:

@@ -91,8 +91,13 @@ impl Called {
     }
 }
 
-/// The kinds of NumPy's numbers that are real: flags, whole numbers and floats.
-const REAL: [char; 4] = ['b', 'i', 'u', 'f'];
+/// Whether a type of NumPy is one of real numbers: flags, whole numbers and floats; or is of another library, as the formats of 16 bits and
+/// fewer that JAX has: NumPy takes these for raw bytes, whose letter they have not.
+fn is_real(dtype: &Bound<'_, PyAny>) -> PyResult<bool> {
+    let letter = |name| dtype.getattr(name)?.extract::<char>();
+    let kind = letter("kind")?;
+    Ok(['b', 'i', 'u', 'f'].contains(&kind) || (kind == 'V' && letter("char")? != kind))
+}
 
 /// An output with its name.
 fn output(item: &Bound<'_, PyAny>) -> PyResult<(String, f64)> {
@@ -101,9 +106,7 @@ fn output(item: &Bound<'_, PyAny>) -> PyResult<(String, f64)> {
         wrong(format!("the name of an output is {}: it must be a text", type_name(&name)))
     })?;
     // NumPy makes numbers of complex ones, of texts and of bytes, too.
-    let kind = value.getattr("dtype").and_then(|dtype| dtype.getattr("kind"));
-    let is_real =
-        kind.and_then(|kind| kind.extract::<char>()).map_or(true, |kind| REAL.contains(&kind));
+    let is_real = value.getattr("dtype").and_then(|dtype| is_real(&dtype)).unwrap_or(true);
     let number = if is_real { number(&value) } else { None };
     let number = number.ok_or_else(|| {
         wrong(format!("the output `{name}` is {}: it must be a number", type_name(&value)))
