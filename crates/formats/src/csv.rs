@@ -16,7 +16,8 @@ use crate::{
 /// The bodies of a table, and the columns of which nothing is read.
 pub(crate) fn read(text: &Text, default: Products) -> Result<(Vec<FileBody>, Gaps), Refusal> {
     let (header, mut rows) = find_header(text)?;
-    let products = stated_products(text)?.unwrap_or(default);
+    let start = header.row.first().map_or(0, |field| field.start);
+    let products = stated_products(text, start)?.unwrap_or(default);
 
     let mut bodies = Vec::new();
     let mut things = BTreeSet::new();
@@ -53,7 +54,7 @@ pub(crate) fn read(text: &Text, default: Products) -> Result<(Vec<FileBody>, Gap
         bodies.push(FileBody::new(name, line, reading).summing_up(summary));
     }
     let mut gaps = Gaps::default();
-    let line = text.line(header.row.first().map_or(0, |field| field.start));
+    let line = text.line(start);
     let things = things.iter().filter_map(|at| header.heading(text, *at)).map(str::to_owned);
     let has_masses = header.columns[MASS].is_some();
     for (kind, unread) in [

@@ -88,13 +88,10 @@ impl<'a> Rows<'a> {
     /// no cell. Spreadsheets write separators alone for a blank row.
     pub(crate) fn next(&mut self) -> Option<Result<Vec<Field>, QuoteError>> {
         loop {
-            let rest = &self.text[self.at..];
-            let line = rest.split('\n').next()?;
-            if rest.is_empty() {
+            if self.at == self.text.len() {
                 return None;
             }
-            if !line.trim().is_empty() && is_comment(line) {
-                self.at = (self.at + line.len() + 1).min(self.text.len());
+            if self.passes_comment() {
                 continue;
             }
             match self.row() {
@@ -102,6 +99,26 @@ impl<'a> Rows<'a> {
                 row => return Some(row),
             }
         }
+    }
+
+    /// Passes over the line that begins here, if it is a comment.
+    fn passes_comment(&mut self) -> bool {
+        let line = self.text[self.at..].split('\n').next().unwrap_or_default();
+        let passes = !line.trim().is_empty() && is_comment(line);
+        if passes {
+            self.at = (self.at + line.len() + 1).min(self.text.len());
+        }
+        passes
+    }
+
+    /// Passes over the rows before an offset; whether one begins there, and not only a line within a quoted cell.
+    fn begins_at(&mut self, at: usize) -> bool {
+        while self.at < at {
+            if !self.passes_comment() && self.row().is_err() {
+                self.at = self.text.len();
+            }
+        }
+        self.at == at
     }
 
     /// The fields of the row that begins here.
@@ -194,6 +211,16 @@ pub(crate) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     text.split_inclusive('\n').map(move |line| {
         at += line.len();
         (at - line.len(), line)
+    })
+}
+
+/// The lines that are no rows, with their offsets: titles and comments above a header, and comments below it.
+pub(crate) fn titles(text: &str, header: usize) -> impl Iterator<Item = (usize, &str)> {
+    let line = text.get(header..).unwrap_or_default().lines().next().unwrap_or_default();
+    let mut rows = Rows::at(text, header, line);
+    lines(text).filter(move |(at, line)| {
+        let mut is_below = || *at > header && is_comment(line) && rows.begins_at(*at);
+        !line.trim().is_empty() && (at + line.len() <= header || is_below())
     })
 }
 

@@ -84,7 +84,6 @@ impl TenMomentsFile {
 
     fn from_csv(text: &str) -> Result<Self, TenMomentsError> {
         let text = Text::new(text.as_bytes(), true)?;
-        let products = stated_products(&text)?.unwrap_or(Products::TensorEntries);
         let mut rows = Rows::new(text.as_str());
         let mut numbers: Vec<[f64; 10]> = Vec::new();
         let mut header: Option<Columns> = None;
@@ -120,6 +119,7 @@ impl TenMomentsFile {
                 Columns::of_comment(&text)?.unwrap_or((Columns::default(), top.unwrap_or_default()))
             }
         };
+        let products = stated_products(&text, top)?.unwrap_or(Products::TensorEntries);
         title_units::refused(&text, top, columns.some_lack)?;
         // In the order of the ten and in SI, products as tensor entries: the rows of the covariance as its columns.
         let of = |i: usize| {

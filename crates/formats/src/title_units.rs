@@ -4,7 +4,7 @@ use crate::{
     FileProblem,
     body::shortened,
     error::Refusal,
-    rows::{is_comment, lines},
+    rows::titles,
     text::Text,
     unit_words::{Kind, Run, is_certain, is_name, is_si, parts, runs},
 };
@@ -25,10 +25,7 @@ pub(crate) fn refused(text: &Text, header: usize, some_lack: bool) -> Result<(),
     if !some_lack {
         return Ok(());
     }
-    let is_title = |(at, line): &(usize, &str)| {
-        at + line.len() <= header || *at > header && is_comment(line) && !line.trim().is_empty()
-    };
-    let mut titles = lines(text.as_str()).filter(is_title).take(LINES);
+    let mut titles = titles(text.as_str(), header).take(LINES);
     match titles.find(|(_, line)| speaks_of_others(line)) {
         Some((at, line)) => {
             let said = shortened(line.trim());

@@ -217,7 +217,7 @@ impl PartsTable {
             }
         }
         let has_parents = has(Column::Parent);
-        let stated = stated_products(&text)?;
+        let stated = stated_products(&text, start)?;
         let measured = columns.iter().filter_map(Heading::dimension);
         let measured = measured.map(|(dimension, unit)| (dimension, unit.unwrap_or(1.0)));
         let terms = &TableTerms::new(measured, InertiaPoint::MassCentre);
