@@ -6,15 +6,18 @@ use crate::{
     error::Refusal,
     rows::titles,
     text::Text,
-    unit_words::{Kind, Run, is_certain, is_name, is_si, parts, runs},
+    title_factors::is_scaled,
+    title_words::{Word, are_units, clauses, plain, words},
+    unit_words::{Kind, is_certain, is_name, is_si, runs},
+    units::Dimension,
 };
 
 /// Bytes of the longest line that is judged, and most lines that are: longer ones are no titles.
 const LONGEST: usize = 2000;
 const LINES: usize = 1000;
 
-/// What parts a line into clauses, as cells and brackets are.
-const ENDS: [char; 10] = [',', ';', '\t', '|', '(', ')', '[', ']', '{', '}'];
+/// Systems of units that alone are names of something else.
+const NAMES: [&str; 3] = ["us", "british", "mgs"];
 
 /// Units that are something else beside the name of what is measured: the `inertia of the foot`, `Ixy = -∫xy dm`.
 const DOUBTFUL: [&str; 4] = ["foot", "feet", "dm", "um"];
@@ -40,27 +43,39 @@ fn speaks_of_others(line: &str) -> bool {
     if line.len() > LONGEST {
         return false;
     }
-    let line = line.replace('²', "2").replace('³', "3").replace("U.S.", "US");
+    let line = plain(line);
     let runs = runs(&line);
     let lower: Vec<String> = runs.iter().map(|run| run.text.to_lowercase()).collect();
-    let mut words: Vec<Word<'_>> = Vec::with_capacity(runs.len());
-    for clause in runs.chunk_by(|_, next| !next.gap.contains(ENDS)) {
-        let has_two = clause.iter().any(|run| run.text == "2");
-        let lower = lower[words.len()..].iter().map(String::as_str);
-        let of = |(run, lower)| Word { run, parts: parts(lower, has_two).unwrap_or_default() };
-        words.extend(clause.iter().zip(lower).map(of));
-    }
+    let words = words(&runs, &lower);
     let said = Said {
         has_units: words.iter().any(|word| word.is_of(Kind::Units)),
         of_several: words.iter().any(Word::is_of_several),
         is_capital: runs.iter().all(|run| run.is_capital),
     };
-    let mut clauses = words.chunk_by(|_, next| !next.run.gap.contains(ENDS));
-    clauses.any(|clause| {
+    clauses(&words).any(|clause| {
         let value = clause.iter().rposition(|word| word.run.gap.contains([':', '=']));
         let value = value.filter(|at| *at > 0);
-        said.is_of_others(clause) || value.is_some_and(|at| said.is_of_others(&clause[at..]))
+        is_scaled(clause)
+            || said.is_of_others(clause)
+            || value.is_some_and(|at| said.is_of_others(&clause[at..]))
     }) || is_unknown(&words)
+        || are_weights(&words)
+}
+
+/// Whether masses are in newtons, which are units of SI, but not those of a mass: `Mass [N]`, `weights in newtons`.
+fn are_weights(words: &[Word<'_>]) -> bool {
+    let is_newton = |word: &Word<'_>| word.parts.iter().any(|(_, part)| part.starts_with('n'));
+    words.windows(2).enumerate().any(|(at, pair)| {
+        let is_between = pair[1].run.gap.contains(['[', '(', '{', '=', ':']);
+        let before = if pair[0].is_in() {
+            at.checked_sub(1).and_then(|at| words.get(at))
+        } else {
+            pair.first().filter(|_| is_between)
+        };
+        pair[1].is_of(Kind::Amount)
+            && is_newton(&pair[1])
+            && before.is_some_and(|word| word.measures(Dimension::Mass))
+    })
 }
 
 /// What a line says as a whole.
@@ -103,87 +118,20 @@ impl Said {
                 || self.of_several
                 || letters > 1 && (letters > 2 || is_sure || self.is_capital || self.has_units);
             // Elsewhere it is a word between others.
-            let is_inch = is_whole && at + 1 == phrase.len() || word.run.is_squared;
+            let is_last = at + 1 == phrase.len();
+            let is_behind_in = at.checked_sub(1).is_some_and(|before| phrase[before].is_in());
+            let is_inch = is_last && (is_whole || is_behind_in) || word.run.is_squared;
             word.parts.iter().any(|(kind, part)| match kind {
                 _ if is_si(part) || is_name(part) => false,
                 Kind::Amount | Kind::Length if !is_clear => false,
                 Kind::Length if word.is_in() => is_inch,
                 Kind::Amount | Kind::Length => is_stated || !is_beside || !DOUBTFUL.contains(part),
-                Kind::System => self.has_units,
+                Kind::System => self.has_units || is_whole && !NAMES.contains(part),
                 Kind::Time | Kind::Units | Kind::Measured | Kind::Beside => false,
             })
         };
         (is_whole || is_sure) && phrase.iter().enumerate().any(counts)
     }
-}
-
-/// A word or a number.
-struct Word<'a> {
-    run: &'a Run<'a>,
-    /// What it is, if it is a unit or stands beside units.
-    parts: Vec<(Kind, &'a str)>,
-}
-
-impl Word<'_> {
-    fn is_of(&self, kind: Kind) -> bool {
-        self.parts.iter().any(|(of, _)| *of == kind)
-    }
-
-    /// Whether it is one for units that is no thing: a `unit` is one, too.
-    fn is_of_several(&self) -> bool {
-        const ONE: [&str; 4] = ["unit", "einheit", "unité", "unidad"];
-        self.parts.iter().any(|(kind, word)| *kind == Kind::Units && !ONE.contains(word))
-    }
-
-    fn is_measure(&self) -> bool {
-        self.is_of(Kind::Amount) || self.is_of(Kind::Length)
-    }
-
-    fn is_in(&self) -> bool {
-        self.run.text.eq_ignore_ascii_case("in")
-    }
-
-    fn is_other(&self) -> bool {
-        self.parts.iter().any(|(_, part)| !is_si(part))
-    }
-}
-
-/// Which words of a clause are units or stand beside units, and neither say how much something is, as in `300 mg` and `0.3 g/cm3`, nor are
-/// names, as the FT-2.
-fn are_units(words: &[Word<'_>]) -> Vec<bool> {
-    let mut has_amount = false;
-    let is_power = |at: usize, has_amount: bool| {
-        let before = at.checked_sub(1).and_then(|before| words.get(before));
-        words.get(at).is_some_and(|word| word.run.text == "2")
-            && before.is_some_and(|before| {
-                let is_unit = before.is_measure() && (!before.run.is_capital || has_amount);
-                before.run.is_squared || is_unit
-            })
-    };
-    // Whether a number that is no power stands before a word, and whether that belongs to the word.
-    let (mut is_behind_number, mut is_quantity) = (false, false);
-    let one = |(at, word): (usize, &Word<'_>)| {
-        let gap = word.run.gap;
-        if word.run.is_number() {
-            let is_power = is_power(at, has_amount);
-            is_behind_number = !is_power;
-            return is_power && !is_quantity;
-        }
-        let next = words.get(at + 1);
-        // As in `rev 3 in mm`.
-        let is_between = word.is_in() && next.is_some_and(Word::is_measure);
-        is_quantity = if std::mem::take(&mut is_behind_number) {
-            gap.chars().all(|c| c.is_whitespace() || "-_".contains(c)) && !is_between
-        } else {
-            is_quantity && !gap.contains(char::is_whitespace)
-        };
-        let is_short = word.run.is_capital || word.run.text.chars().count() == 1;
-        let has_number = next.is_some_and(|next| next.run.is_number());
-        let is_thing = is_short && has_number && !is_power(at + 1, has_amount);
-        has_amount |= word.is_of(Kind::Amount) && !is_thing;
-        !word.parts.is_empty() && !is_quantity && !is_thing
-    };
-    words.iter().enumerate().map(one).collect()
 }
 
 /// Whether a line says what its units are in words of which none is a unit: `Units: see the drawing`. With a digit these are things.
@@ -286,6 +234,58 @@ mod tests {
             prop_assert!(!is_long || speaks_of_others(&line), "{}", line);
         }
 
+        /// A factor makes another unit of that of SI, and a number behind another word is a quantity.
+        #[test]
+        fn factors_are_told_from_quantities(
+            measured in select(&["Mass", "Masses", "Inertia", "Lengths", "All units", "Moments of inertia", "CG"][..]),
+            unit in select(&["kg", "m", "kg m2", "kg·m²", "kg m^2"][..]),
+            (factor, is_power) in select(&[
+                ("10^-3", true), ("10⁻³", true), ("1e-6", true), ("1.0E-6", true), ("10**3", true), ("10^6", true), ("1E3", true), ("10^(-3)", true),
+                ("1000", false), ("0.001", false), ("100", false),
+            ][..]),
+            between in select(&[" ", " x ", "·", " × ", " * "][..]),
+            quantity in select(&["of", "at", "below", "rounded to", "within"][..]),
+            mark in select(&["", "# ", ",,"][..]),
+        ) {
+            let scaled = format!("{factor}{between}{unit}");
+            for line in [format!("{measured} in {scaled}"), format!("Table 3, {measured} [{scaled}], rev 2"), format!("{measured} [{unit}/{factor}]")] {
+                prop_assert!(speaks_of_others(&format!("{mark}{line}")), "{}", line);
+            }
+            let behind = format!("{mark}{measured} [{unit}{between}{factor}]");
+            prop_assert!(!is_power || speaks_of_others(&behind), "{}", behind);
+            let line = format!("{mark}{measured} {quantity} {factor} {unit}");
+            prop_assert!(!speaks_of_others(&line), "{}", line);
+        }
+
+        /// A line that says what one unit is speaks of another, unless that is one of SI.
+        #[test]
+        fn units_are_defined(
+            before in select(&["# ", "scale: ", "Drawing 3, ", ""][..]),
+            name in select(&["unit", "length unit", "mass unit"][..]),
+            value in select(&["1", "25.4", "0.001", "1000", "2", "1e-3"][..]),
+            (unit, is_si) in select(&[("m", true), ("kg", true), ("mm", false), ("in", false), ("lb", false), ("g", false)][..]),
+        ) {
+            let line = format!("{before}1 {name} = {value} {unit}");
+            prop_assert_eq!(speaks_of_others(&line), !is_si || value != "1", "{}", line);
+        }
+
+        /// What is measured, a density, and units that the table has not are none of its units.
+        #[test]
+        fn units_of_something_else_are_none(
+            before in select(&["# Mass in kg, ", "Units: kg, m, kg m2; ", "", "Bus ("][..]),
+            of_another in select(&[
+                "CM in m", "t in s", "CM frame", "inertia about CM in kg m2", "density in {unit}/m3", "areal mass {unit}/m2", "density: {unit}/cm^3",
+                "converted from {unit}", "not {unit} and mm", "converted from {unit}, in", "MLI of {unit}/cm²",
+            ][..]),
+            unit in select(&["g", "lb", "slug", "oz", "mg", "t"][..]),
+            after in select(&["", ", kg", "; inertia in kg m2"][..]),
+        ) {
+            let line = format!("{before}{}{after}", of_another.replace("{unit}", unit));
+            prop_assert!(!speaks_of_others(&line), "{}", line);
+            let line = format!("{line}, mass in {unit}");
+            prop_assert!(speaks_of_others(&line), "{}", line);
+        }
+
         /// Names of things and quantities are no units.
         #[test]
         fn things_and_quantities_are_none(
@@ -322,6 +322,36 @@ mod tests {
             "Units: Zoll",
             "# Units: see the drawing",
             "# Units: SI. Drawn in mm, converted",
+            "# Inertia in 1e-6 kg m2",
+            "Inertia in 10^-3 kg·m²",
+            "Inertia in 10⁻³ kg·m²",
+            "Inertia [kg·m² × 10⁻³]",
+            "Inertia [kg·m²/1000]",
+            "Mass in 1000 kg",
+            "Mass [1000 kg]",
+            ",Mass [kg],CG [m],,,Inertia [10^-3 kg·m²],,",
+            "# Masses in N",
+            "weights in newtons",
+            "Part,Weight (N),CG (m)",
+            "# Imperial",
+            "Mass properties (English)",
+            "cgs",
+            "Creo mmNs",
+            "mmNs units",
+            "CG in mils",
+            "CG in decimeters",
+            "# thou",
+            "STA in in",
+            "Mass in kips",
+            "Mass in short tons",
+            "# 1 unit = 1 mm",
+            "# scale: 1 unit = 1 mm",
+            "# 1 length unit = 25.4 mm",
+            "# 1 unit = 0.001 m",
+            "# Masses are not kg, lb",
+            "# Masses from CAD in lb",
+            "Inertia in g/mm^2",
+            "Units: lb/in/lb-in2",
         ] {
             assert!(speaks_of_others(line), "{line}");
         }
@@ -347,6 +377,22 @@ mod tests {
             "# g = 9.81",
             "Jones, Dan",
             "Part,m,Cx,Cy,Cz",
+            "# Inertia about CM in kg m^2",
+            "# mass kg, CM in m, inertia about CM in kg m2",
+            "Inertia in CM frame",
+            "# Mass in kg, positions in m, t in s",
+            "# Units: kg, m, kg m2; density: g/cm3",
+            "Density in kg/dm3",
+            "MLI areal mass in g/m2",
+            "# Masses in kg, not g and mm",
+            "units: kg, m (converted from lb, in)",
+            "# Inertia rounded to 1e-6 kg m2",
+            "# Total mass (1000 kg)",
+            "# Total mass: 1000 kg",
+            "# Tank of 10 kg",
+            "# 1 unit = 1 m",
+            "# Force in N, mass in kg",
+            "# Payload of 10^3 kg",
         ] {
             assert!(!speaks_of_others(line), "{line}");
         }

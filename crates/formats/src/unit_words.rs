@@ -41,10 +41,13 @@ const WORDS: [(Kind, &[&str]); 6] = [
         Kind::Amount,
         &[
             "gram", "gramm", "gramme", "kilo", "pound", "ton", "tonne", "ounce", "newton", "dyne",
-            "poundal",
+            "poundal", "kip",
         ],
     ),
-    (Kind::Length, &["metre", "meter", "inch", "inche", "foot", "feet", "yard", "micron"]),
+    (
+        Kind::Length,
+        &["metre", "meter", "inch", "inche", "foot", "feet", "yard", "micron", "mil", "thou"],
+    ),
     (Kind::Time, &["second"]),
     (
         Kind::System,
@@ -72,7 +75,7 @@ const WORDS: [(Kind, &[&str]); 6] = [
         Kind::Beside,
         &[
             "system", "per", "x", "square", "squared", "sq", "of", "and", "all", "are", "is",
-            "the", "for", "used", "given", "force", "masse", "value",
+            "the", "for", "used", "given", "force", "masse", "value", "short", "long",
         ],
     ),
 ];
@@ -96,7 +99,7 @@ const SI: [&str; 14] = [
 ];
 
 /// What may stand before a word for a unit.
-const PREFIXES: [&str; 5] = ["kilo", "milli", "centi", "mega", "micro"];
+const PREFIXES: [&str; 6] = ["kilo", "milli", "centi", "deci", "mega", "micro"];
 
 /// Symbols that say in small letters that a unit is meant, whatever stands beside them.
 const CERTAIN: [&str; 6] = ["oz", "lb", "mm", "cm", "slinch", "mg"];
@@ -254,7 +257,8 @@ fn whole(word: &str) -> Option<Kind> {
 fn joined(word: &str, has_two: bool) -> Option<Vec<(Kind, &str)>> {
     let orders = [[Kind::Amount, Kind::Length], [Kind::Length, Kind::Amount]];
     orders.into_iter().find_map(|[first, second]| {
-        symbols(first).find_map(|one| {
+        // Of two readings, that with the longer first symbol: `mmNs` is mm·N·s.
+        let read = symbols(first).filter_map(|one| {
             let rest = behind_cross(word.strip_prefix(one)?);
             symbols(second).find_map(|other| {
                 let time = behind_cross(rest.strip_prefix(other)?);
@@ -267,7 +271,8 @@ fn joined(word: &str, has_two: bool) -> Option<Vec<(Kind, &str)>> {
                 let parts = || vec![(first, &word[..one.len()]), (second, &rest[..other.len()])];
                 (is_time && is_mass).then(parts)
             })
-        })
+        });
+        read.max_by_key(|parts| parts.first().map(|(_, symbol)| symbol.len()))
     })
 }
 
