@@ -185,6 +185,17 @@ pub enum FileProblem {
         /// The line, shortened.
         said: String,
     },
+    /// A title, or a comment, says that inertias are about a point other than that of the table.
+    #[error(
+        "{said:?} speaks of inertias about another point than {point}: the inertia of each row must be about that, and the line must say so, or \
+         not speak of it"
+    )]
+    TitlePoint {
+        /// The line, shortened.
+        said: String,
+        /// What inertias are about in such a table.
+        point: String,
+    },
     /// Its grammar is broken.
     #[error("malformed: {message}")]
     Malformed {

@@ -70,6 +70,7 @@ mod ten_moments;
 mod ten_table;
 mod text;
 mod title_factors;
+mod title_point;
 mod title_units;
 mod title_words;
 mod unit_words;

@@ -12,7 +12,7 @@ use crate::{
     table_terms::{InertiaPoint, TableTerms},
     ten_heading::{TenCentre, TenHeading},
     text::Text,
-    title_units,
+    title_point, title_units,
     unit_words::speaks_of_a_unit,
     units::{BadUnit, Dimension, SharedUnit, Unit, UnitProblem, longest_name, squeezed},
 };
@@ -365,6 +365,7 @@ pub(crate) fn find_header(text: &Text) -> Result<(Header, Rows<'_>), Refusal> {
         if let Some(found) = header_at(text, at, line)? {
             let some_lack = found.0.mass.is_lacking() || found.0.inertia.is_lacking();
             title_units::refused(text, at, some_lack)?;
+            title_point::refused(text, at, found.0.terms.point())?;
             return Ok(found);
         }
     }

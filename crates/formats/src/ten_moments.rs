@@ -10,10 +10,11 @@ use crate::{
     products_comment::stated_products,
     read_text,
     rows::{Field, Rows, commented_headers},
+    table_terms::InertiaPoint,
     ten_heading::{TenCentre, TenHeading},
     ten_table::TenColumns,
     text::Text,
-    title_units,
+    title_point, title_units,
     units::Unit,
 };
 
@@ -121,6 +122,13 @@ impl TenMomentsFile {
         };
         let products = stated_products(&text, top)?.unwrap_or(Products::TensorEntries);
         title_units::refused(&text, top, columns.some_lack)?;
+        if let Some(centre) = columns.centre {
+            let point = match centre {
+                TenCentre::MassCentre => InertiaPoint::MassCentre,
+                TenCentre::FirstMoments => InertiaPoint::Origin,
+            };
+            title_point::refused(&text, top, point)?;
+        }
         // In the order of the ten and in SI, products as tensor entries: the rows of the covariance as its columns.
         let of = |i: usize| {
             let (at, unit) = columns.places[i];

@@ -22,5 +22,6 @@ mod samples;
 mod several;
 mod slips;
 mod ten;
+mod titles;
 mod units;
 mod unread;

@@ -27,7 +27,7 @@ use crate::{
     rows::{Field, NOT_KNOWN, Rows, headers, without_marks},
     table_terms::{InertiaPoint, TableTerms},
     text::Text,
-    title_units,
+    title_point, title_units,
     units::{Unit, squeezed},
 };
 use edges::Edges;
@@ -207,6 +207,7 @@ impl PartsTable {
         }
         let lacks = |column: &Heading| matches!(column.dimension(), Some((_, None)));
         title_units::refused(&text, start, columns.iter().any(lacks))?;
+        title_point::refused(&text, start, InertiaPoint::MassCentre)?;
         let has = |wanted: Column| columns.contains(&Heading::Column(wanted));
         let has_mass = columns.iter().any(|c| matches!(c, Heading::Column(Column::Value(0, _))));
         let names = "name, id, part, body, link, component, item, element or description";
