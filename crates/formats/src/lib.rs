@@ -54,6 +54,7 @@ mod parts;
 mod plain;
 mod product_heading;
 mod products_comment;
+mod products_said;
 mod references;
 mod repair;
 mod robot;

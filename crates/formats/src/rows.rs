@@ -2,7 +2,7 @@
 //!
 //! Read by hand, because a copy that changes single numbers needs the places.
 
-use crate::{error::Refusal, products_comment::states_products, text::Text};
+use crate::{error::Refusal, products_said::states_products, text::Text};
 
 /// Why quotation marks do not hold a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

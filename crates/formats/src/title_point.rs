@@ -5,7 +5,7 @@ use crate::{
     body::shortened,
     error::Refusal,
     rows::titles,
-    spread::{parted, words},
+    spread::words,
     table_terms::{InertiaPoint, dimension_of},
     text::Text,
     units::Dimension,
@@ -38,7 +38,7 @@ pub(crate) fn refused(text: &Text, header: usize, point: InertiaPoint) -> Result
 
 /// Whether a clause names an inertia and then a point other than the one here. Axes are not points: each may go through any.
 fn speaks_of_another(line: &str, point: InertiaPoint) -> bool {
-    let line = parted(line).replace("w.r.t", "wrt");
+    let line = line.to_lowercase().replace("w.r.t", "wrt");
     let mut was_inertia = false;
     line.split([',', ';', '\t', '|', '(', ')', '[', ']', '{', '}']).any(|clause| {
         let words: Vec<&str> = words(clause).filter(|word| !word.is_empty()).collect();
@@ -92,7 +92,7 @@ mod tests {
             (name, of) in select(&[
                 ("the vehicle origin", Some(InertiaPoint::Origin)), ("origin", Some(InertiaPoint::Origin)),
                 ("the origin of the body frame", Some(InertiaPoint::Origin)),
-                ("CG", Some(InertiaPoint::MassCentre)), ("the mass centre", Some(InertiaPoint::MassCentre)), ("own CoM", Some(InertiaPoint::MassCentre)),
+                ("CG", Some(InertiaPoint::MassCentre)), ("the mass centre", Some(InertiaPoint::MassCentre)), ("own axes", Some(InertiaPoint::MassCentre)), ("CoM", Some(InertiaPoint::MassCentre)),
                 ("the center of gravity of each part", Some(InertiaPoint::MassCentre)), ("the hinge", None), ("point A", None),
             ][..]),
             after in select(&["", "), kg m2", ", CG relative to the origin", "; origin at the CG"][..]),

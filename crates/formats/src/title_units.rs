@@ -378,6 +378,8 @@ mod tests {
             "Jones, Dan",
             "Part,m,Cx,Cy,Cz",
             "# Inertia about CM in kg m^2",
+            ",Mass,CGs,,,Inertia,,",
+            "# CGs in m, all units SI",
             "# mass kg, CM in m, inertia about CM in kg m2",
             "Inertia in CM frame",
             "# Mass in kg, positions in m, t in s",

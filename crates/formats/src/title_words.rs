@@ -116,7 +116,8 @@ fn is_of_another(words: &[Word<'_>], at: usize) -> bool {
     let is_frame = |next: &Word<'_>| {
         ["frame", "axes"].iter().any(|name| next.run.text.eq_ignore_ascii_case(name))
     };
-    let is_point = one.run.text == "CM" && next.is_some_and(is_frame);
+    // `CGs` are centres of gravity, and CGS is a system.
+    let is_point = one.run.text == "CGs" || one.run.text == "CM" && next.is_some_and(is_frame);
     let of_inertia = |word: &Word<'_>| word.measures(Dimension::Inertia);
     // Whether a unit is divided by the square or the cube of the one here.
     let is_divided = |at: usize| {
