@@ -351,6 +351,8 @@ mod tests {
             "# Masses are not kg, lb",
             "# Masses from CAD in lb",
             "Inertia in g/mm^2",
+            "Inertia [g/mm²]",
+            "Units: kg, lb/in2",
             "Units: lb/in/lb-in2",
         ] {
             assert!(speaks_of_others(line), "{line}");

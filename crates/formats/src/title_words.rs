@@ -118,16 +118,20 @@ fn is_of_another(words: &[Word<'_>], at: usize) -> bool {
     };
     // `CGs` are centres of gravity, and CGS is a system.
     let is_point = one.run.text == "CGs" || one.run.text == "CM" && next.is_some_and(is_frame);
-    let of_inertia = |word: &Word<'_>| word.measures(Dimension::Inertia);
-    // Whether a unit is divided by the square or the cube of the one here.
+    // `g/mm2` may be a slip for `g·mm2`, unless the clause names something else: `areal mass of the blanket in g/m2`.
+    let names_another = || {
+        let is_named = words.iter().any(|word| word.parts.is_empty() && !word.run.is_number());
+        is_named && !words.iter().any(|word| word.measures(Dimension::Inertia))
+    };
     let is_divided = |at: usize| {
         let power = word(at + 1).filter(|power| ["", "^"].contains(&power.run.gap));
         word(at).is_some_and(|unit| unit.is_of(Kind::Length) && unit.run.gap == "/")
             && at.checked_sub(1).and_then(word).is_some_and(|unit| unit.is_of(Kind::Amount))
-            && power.is_some_and(|power| ["2", "3"].contains(&power.run.text))
+            && power.is_some_and(|power| {
+                power.run.text == "3" || power.run.text == "2" && names_another()
+            })
     };
-    let is_density = is_divided(at) || is_divided(at + 1);
-    is_measured || is_point || is_density && !words.iter().any(of_inertia)
+    is_measured || is_point || is_divided(at) || is_divided(at + 1)
 }
 
 /// Which words of a clause are units or stand beside units, and neither say how much something is, as in `300 mg` and `0.3 g/cm3`, nor are
