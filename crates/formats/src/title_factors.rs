@@ -5,7 +5,9 @@ use crate::{title_words::Word, unit_words::Kind};
 /// Whether a clause has a factor beside a unit, which makes another unit of it, be that one of SI. A number behind another word is a quantity:
 /// `of 1000 kg`, `rounded to 1e-6 kg m2`.
 pub(crate) fn is_scaled(clause: &[Word<'_>]) -> bool {
-    (0..clause.len()).any(|at| Factor::at(clause, at).is_some_and(|factor| factor.scales(clause)))
+    clause.iter().any(Word::is_measure)
+        && (0..clause.len())
+            .any(|at| Factor::at(clause, at).is_some_and(|factor| factor.scales(clause)))
 }
 
 /// A number in a clause.
@@ -20,14 +22,19 @@ struct Factor {
 }
 
 impl Factor {
-    /// The number whose first word is given.
+    /// The number whose first word is given; nothing within one.
     fn at(clause: &[Word<'_>], start: usize) -> Option<Self> {
         let is_within = |word: &&Word<'_>| {
             let (text, gap) = (word.run.text, word.run.gap);
             (word.run.is_number() || text.eq_ignore_ascii_case("e"))
-                && gap.chars().all(|c| ".^*-−+{".contains(c))
+                && gap.strip_prefix("**").unwrap_or(gap).chars().all(|c| ".^-−+{".contains(c))
         };
         let first = clause.get(start).filter(|word| word.run.is_number())?;
+        let before = start.checked_sub(1).and_then(|before| clause.get(before));
+        let has_begun = |before: &Word<'_>| is_of_number(before) && !is_cross(before);
+        if before.is_some_and(has_begun) && is_within(&first) {
+            return None;
+        }
         let rest = clause.get(start + 1..).unwrap_or_default();
         let mut written = first.run.text.to_owned();
         let mut end = start + 1;

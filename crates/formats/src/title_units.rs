@@ -243,7 +243,7 @@ mod tests {
                 ("10^-3", true), ("10⁻³", true), ("1e-6", true), ("1.0E-6", true), ("10**3", true), ("10^6", true), ("1E3", true), ("10^(-3)", true),
                 ("1000", false), ("0.001", false), ("100", false),
             ][..]),
-            between in select(&[" ", " x ", "·", " × ", " * "][..]),
+            between in select(&[" ", " x ", "·", " × ", " * ", "*", "×"][..]),
             quantity in select(&["of", "at", "below", "rounded to", "within"][..]),
             mark in select(&["", "# ", ",,"][..]),
         ) {
