@@ -2,6 +2,31 @@
 
 use super::*;
 
+/// ± 2° of the axes is ± (I_i − I_j)·2° of a product; both stated, the tighter one holds.
+#[test]
+fn the_tighter_of_axes_and_products_holds() {
+    let nominal = body([5000.0, 4000.0, 3000.0], [0.0; 3]);
+    let axes = Some(AxesStatement::each([1.0; 3], 1.0).unwrap());
+    let alone = Statements { axes, ..Statements::default() }.model(&nominal, None).unwrap();
+    let gaps = [1000.0, 2000.0, 1000.0];
+    for (found, gap) in alone.implied().deviations()[3..].iter().zip(gaps) {
+        assert!((found / (gap * 1_f64.to_radians()) - 1.0).abs() < 0.01);
+    }
+    assert_eq!(alone.warnings(), [StatementWarning::FixedMoments]);
+    let both = Statements { axes, products: products(50.0, 3.0), ..Statements::default() };
+    let model = both.model(&nominal, None).unwrap();
+    let implied = model.implied().deviations();
+    // 1° would be 17.5, 34.9, 17.5; 16.7 is stated.
+    for found in &implied[3..] {
+        assert!((found / (50.0 / 3.0) - 1.0).abs() < 0.01, "{implied:?}");
+    }
+    let said: String = model.warnings().iter().map(ToString::to_string).collect();
+    assert!(
+        said.contains("1.00°, 1.00°, 1.00°") && said.matches("0.96°, 0.48°, 0.96°").count() == 2,
+        "{said}"
+    );
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
