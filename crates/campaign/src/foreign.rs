@@ -5,6 +5,7 @@ mod no_runs;
 mod of_csv;
 mod of_folder;
 mod of_parquet;
+mod parquet_cells;
 mod reason;
 mod row_at;
 mod twice;
@@ -279,7 +280,8 @@ impl ForeignTable {
         self.scan_beside(columns, &[], look)
     }
 
-    /// The same, and behind them some columns as they are written, also of runs that failed.
+    /// The same, and behind them some columns as they are written, also of runs that failed: of whatever type they are, with no number where a cell is
+    /// none.
     ///
     /// # Errors
     /// As [`scan`](Self::scan).

@@ -97,27 +97,26 @@ impl Fleet {
         };
         let names = [run, vehicle, flight];
         let mut seen = SeenFlights::default();
-        let read = table.scan_of_models(&[], &names, |columns, models| {
+        table.scan_of_models(&[], &names, |columns, models| {
             let [runs, vehicles, flights] = columns else { return };
             for (((run, vehicle), flight), model) in
                 runs.iter().zip(vehicles).zip(flights).zip(models)
             {
                 seen.add(*model, [*run, *vehicle, *flight]);
             }
-        });
-        match (read, seen.each()) {
-            (Ok(()), Some(each)) => {
+        })?;
+        match seen.each() {
+            Some(each) => {
                 let counting = Counting::new(table.counting().looks(), each);
                 let left_out = (each > 1).then(|| seen.left_out()).flatten();
                 Ok((table.counted(counting), left_out.map(Cow::Owned)))
             }
-            (Ok(()), None) if table.is_run_table() => Err(table.refused(
+            None if table.is_run_table() => Err(table.refused(
                 "its columns \"run\", \"vehicle\" and \"flight\" do not belong together as in the run table of a study, where the run \
                  is the vehicle times the flights of each plus the flight, all from 0: it is not known which flights are the first",
             )),
-            (Err(error), _) if table.is_run_table() => Err(error),
             // Columns of another program that have the same names.
-            (Ok(()) | Err(_), _) => Ok((table, Some(OTHER.into()))),
+            None => Ok((table, Some(OTHER.into()))),
         }
     }
 
@@ -152,10 +151,10 @@ fn again(table: &ForeignTable) -> Result<(), ForeignError> {
     let of_fleet = Fleet::columns();
     let apart = of_fleet.iter().flat_map(|column| table.alike(column.name()));
     let names: Vec<String> = iter::once(run).chain(apart).cloned().collect();
-    // False if the column names no runs, as judging sees it, or vehicles and flights are no numbers: those are of another program.
+    // False if the column names no runs, as judging sees it: it is of another program.
     let each = |look: &mut dyn FnMut(u64, &[u64])| {
         let (mut first, mut all_whole, mut numbers) = (0, true, Vec::with_capacity(names.len()));
-        let read = table.scan_of_models(&[], &names, |columns, models| {
+        table.scan_of_models(&[], &names, |columns, models| {
             for (row, model) in (0..).zip(models) {
                 // A table may have a million rows, which share the memory of one.
                 numbers.clear();
@@ -167,8 +166,8 @@ fn again(table: &ForeignTable) -> Result<(), ForeignError> {
                 }
             }
             first += models.len() as u64;
-        });
-        read.is_ok() && all_whole
+        })?;
+        Ok::<_, ForeignError>(all_whole)
     };
     let twice = |is_apart: bool| {
         let (mut seen, mut twice) = (BTreeMap::<Vec<u64>, Spans>::new(), None);
@@ -178,17 +177,20 @@ fn again(table: &ForeignTable) -> Result<(), ForeignError> {
                 let added = seen.entry(apart).or_default().add(*run, 0);
                 twice = added.is_err().then(|| numbers.to_vec());
             }
-        });
-        twice.filter(|_| is_known)
+        })?;
+        Ok::<_, ForeignError>(twice.filter(|_| is_known))
     };
     // A run may stand for each of many vehicles: to tell these apart takes memory, and few tables need it.
-    let Some(twice) = twice(false).and_then(|_| twice(true)) else { return Ok(()) };
+    if twice(false)?.is_none() {
+        return Ok(());
+    }
+    let Some(twice) = twice(true)? else { return Ok(()) };
     let mut rows = Vec::new();
     each(&mut |row, numbers| {
         if rows.len() < 2 && *numbers == *twice {
             rows.push(row);
         }
-    });
+    })?;
     let at: Vec<String> = rows.into_iter().map(|row| table.row_at(row)).collect();
     let named: Vec<String> = names
         .iter()

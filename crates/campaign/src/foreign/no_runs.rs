@@ -1,7 +1,7 @@
 //! Rows of a table that are no runs: those that sum up others, those without a number among numbered runs, and rows of units.
 
 use gyradius_statistics::SummaryNames;
-use parquet::{basic::Type as Physical, errors::ParquetError, file::reader::FileReader};
+use parquet::{errors::ParquetError, file::reader::FileReader};
 use std::{
     io::Read,
     ops::ControlFlow,
@@ -12,9 +12,8 @@ use super::{
     ForeignError, ForeignTable, Form,
     models::Models,
     of_csv::{CsvText, reader},
-    of_parquet::{
-        Whole, first_text, index_of_pandas, names, numbers, open, texts, unread, unread_codec,
-    },
+    of_parquet::{first_text, index_of_pandas, names, open, unread, unread_codec},
+    parquet_cells::{Cells, has_numbers},
     place_of,
     written::number,
 };
@@ -52,7 +51,7 @@ enum NoRun {
 
 /// What the cells are that tell a row which is no run.
 #[derive(Debug, Default)]
-struct Cells {
+struct Seen {
     names: SummaryNames,
     /// Whether one is the number of a run, and the first that is none.
     is_numbered: bool,
@@ -65,7 +64,7 @@ struct Looked {
     place: usize,
     name: String,
     is_run: bool,
-    cells: Cells,
+    seen: Seen,
 }
 
 impl Looked {
@@ -83,8 +82,8 @@ impl Looked {
         places.sort_unstable();
         places.dedup();
         let looked = |place: usize| {
-            let (name, cells) = (columns[place].clone(), Cells::default());
-            Self { place, name, is_run: run == Some(place), cells }
+            let (name, seen) = (columns[place].clone(), Seen::default());
+            Self { place, name, is_run: run == Some(place), seen }
         };
         places.into_iter().map(looked).collect()
     }
@@ -93,7 +92,7 @@ impl Looked {
     fn add(&mut self, path: &Path, at: impl Fn() -> String, cell: &str) -> ControlFlow<NoRunError> {
         let cell = cell.trim();
         let found = number(cell);
-        if self.cells.names.sums_up(cell) && found.is_none() {
+        if self.seen.names.sums_up(cell) && found.is_none() {
             let (path, at, column) = (path.to_owned(), at(), self.name.clone());
             let problem = NoRun::Summary { word: cell.to_owned() };
             return ControlFlow::Break(NoRunError { path, at, column, problem });
@@ -107,16 +106,16 @@ impl Looked {
         if !self.is_run {
             return;
         }
-        self.cells.is_numbered |= run.is_some_and(|run| Column::run_named(run).is_some());
+        self.seen.is_numbered |= run.is_some_and(|run| Column::run_named(run).is_some());
         // An average of numbers has a fraction, most often.
-        if self.cells.without.is_none() && run.is_none_or(|run| run.fract() != 0.0) {
-            self.cells.without = Some((path.to_owned(), at(), cell.to_owned()));
+        if self.seen.without.is_none() && run.is_none_or(|run| run.fract() != 0.0) {
+            self.seen.without = Some((path.to_owned(), at(), cell.to_owned()));
         }
     }
 
     /// What is wrong after all cells.
     fn end(self) -> Option<NoRunError> {
-        let Cells { is_numbered, without, .. } = self.cells;
+        let Seen { is_numbered, without, .. } = self.seen;
         let (path, at, cell) = without.filter(|_| is_numbered)?;
         Some(NoRunError { path, at, column: self.name, problem: NoRun::NoNumber { cell } })
     }
@@ -251,35 +250,28 @@ fn look_parquet(
             let Some(place) = there.iter().position(|name| *name == one.name) else { continue };
             let column = schema.column(place);
             let codec = unread_codec(group.metadata().column(place).compression());
-            if column.max_rep_level() > 0 || codec.is_some() {
+            let may_tell = one.is_run || !has_numbers(&column);
+            if column.max_rep_level() > 0 || codec.is_some() || !may_tell {
                 continue;
             }
-            let whole = Whole::of(&column).unwrap_or(Whole::Signed);
-            let cells = group.get_column_reader(place).map_err(failed)?;
-            let is_text = match column.physical_type() {
-                Physical::BYTE_ARRAY | Physical::FIXED_LEN_BYTE_ARRAY => true,
-                Physical::BOOLEAN
-                | Physical::INT32
-                | Physical::INT64
-                | Physical::INT96
-                | Physical::FLOAT
-                | Physical::DOUBLE => false,
-            };
+            let cells = group.get_column_reader(place);
+            let cells = cells.and_then(|cells| Cells::read(cells, &column, rows));
             let at = |row: usize| format!("row {}", first + row + 1);
-            if is_text {
-                let cells = texts(cells, rows, whole).map_err(failed)?;
-                for (row, cell) in cells.into_iter().enumerate() {
-                    let found = one.add(path, || at(row), cell.as_deref().unwrap_or_default());
-                    if found.is_break() {
-                        return Ok(found);
+            match cells.map_err(failed)? {
+                Cells::Texts(cells) => {
+                    for (row, cell) in cells.into_iter().enumerate() {
+                        let found = one.add(path, || at(row), cell.as_deref().unwrap_or_default());
+                        if found.is_break() {
+                            return Ok(found);
+                        }
                     }
                 }
-            } else if one.is_run && column.physical_type() != Physical::INT96 {
-                let runs = numbers(cells, rows, whole).map_err(failed)?;
-                for (row, run) in runs.into_iter().enumerate() {
-                    let run = run.filter(|run| !run.is_nan());
-                    let cell = run.map_or_else(String::new, |run| run.to_string());
-                    one.add_number(path, || at(row), run, &cell);
+                Cells::Numbers(cells) => {
+                    for (row, cell) in cells.into_iter().enumerate() {
+                        let number = cell.filter(|number| !number.is_nan());
+                        let cell = number.map_or_else(String::new, |number| number.to_string());
+                        one.add_number(path, || at(row), number, &cell);
+                    }
                 }
             }
         }

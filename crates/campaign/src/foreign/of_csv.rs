@@ -125,7 +125,8 @@ pub(super) fn scan_csv(
             }
             for (column, (place, numbers)) in places.iter().zip(&mut some).enumerate() {
                 let cell = row.get(*place).unwrap_or_default();
-                let number = number(cell).ok_or_else(|| {
+                let is_measured = column < measured.len();
+                let number = number(cell).or((!is_measured).then_some(None)).ok_or_else(|| {
                     let problem = format!(
                         "line {line}, column {:?}: {cell:?} is not a number{}",
                         there[*place],
@@ -133,8 +134,7 @@ pub(super) fn scan_csv(
                     );
                     ForeignError::new(path, problem)
                 })?;
-                let is_taken =
-                    |x: &f64| ended || column >= measured.len() || Failure::has_number(*x);
+                let is_taken = |x: &f64| ended || !is_measured || Failure::has_number(*x);
                 numbers.push(number.filter(is_taken));
             }
             if let Some(models) = &mut models {

@@ -1,17 +1,22 @@
 //! Tables of numbers in Parquet files of any writer.
 
 use parquet::{
-    basic::{Compression, ConvertedType, LogicalType, Type as Physical},
+    basic::{Compression, Type as Physical},
     column::reader::ColumnReader,
     data_type::ByteArray,
     errors::ParquetError,
     file::reader::{FileReader, SerializedFileReader},
-    schema::types::{ColumnDescPtr, ColumnDescriptor},
+    schema::types::ColumnDescPtr,
 };
 use std::{collections::HashMap, fs::File, path::Path};
 
 use super::{
-    Columns, ForeignError, OfModels, StatusOf, models::Models, places, reason::no_reason, status,
+    Columns, ForeignError, OfModels, StatusOf,
+    models::Models,
+    parquet_cells::{Cells, has_numbers},
+    places,
+    reason::no_reason,
+    status,
 };
 use crate::{
     failure::{Failure, OK},
@@ -50,7 +55,7 @@ pub(super) fn scan_parquet(
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     let durations = durations(&reader);
     let wrong = |place: usize, problem: &str| ForeignError::of_column(path, &there[place], problem);
-    for place in &places {
+    for (place_of, place) in places.iter().enumerate() {
         let column = schema.column(*place);
         let wrong = |problem: &str| wrong(*place, problem);
         if column.max_rep_level() > 0 {
@@ -61,25 +66,10 @@ pub(super) fn scan_parquet(
                 "is of durations ({unit}), and must be of numbers: in pandas write df[name].dt.total_seconds()"
             )));
         }
-        match column.physical_type() {
-            Physical::BOOLEAN
-            | Physical::INT32
-            | Physical::INT64
-            | Physical::FLOAT
-            | Physical::DOUBLE
-                if Whole::of(&column).is_some() => {}
-            Physical::BOOLEAN
-            | Physical::INT32
-            | Physical::INT64
-            | Physical::INT96
-            | Physical::FLOAT
-            | Physical::DOUBLE
-            | Physical::BYTE_ARRAY
-            | Physical::FIXED_LEN_BYTE_ARRAY => {
-                return Err(wrong(
-                    "is of texts, dates or decimals, of numbers of 16 bits, or of no type, and must be of numbers of 32 or 64 bits, whole numbers or flags",
-                ));
-            }
+        if place_of < measured.len() && !has_numbers(&column) {
+            return Err(wrong(
+                "is of texts, dates or decimals, of numbers of 16 bits, or of no type, and must be of numbers of 32 or 64 bits, whole numbers or flags",
+            ));
         }
     }
     let status = status(&there);
@@ -109,18 +99,18 @@ pub(super) fn scan_parquet(
                 return Err(wrong(*place, &problem));
             }
         }
-        let column = |place: &usize| {
-            let whole = Whole::of(&schema.column(*place)).unwrap_or(Whole::Signed);
-            numbers(group.get_column_reader(*place)?, rows, whole)
+        let cells = |place: usize| {
+            Cells::read(group.get_column_reader(place)?, &schema.column(place), rows)
         };
-        let numbers = places.iter().map(column).collect::<Result<Vec<_>, ParquetError>>();
+        let numbers = places.iter().map(|place| cells(*place).map(Cells::numbers));
+        let numbers = numbers.collect::<Result<Vec<_>, ParquetError>>();
         let mut numbers = numbers.map_err(failed)?;
         if let Some(place) = status
             && let ColumnReader::ByteArrayColumnReader(texts) =
                 group.get_column_reader(place).map_err(failed)?
         {
             let is_ok = |text: &Option<ByteArray>| {
-                text.as_ref().is_some_and(|text| text.data() == OK.as_bytes())
+                text.as_ref().is_some_and(|text| text.data().trim_ascii() == OK.as_bytes())
             };
             let texts = read(texts, rows).map_err(failed)?;
             for (row, text) in texts.iter().enumerate().filter(|(_, text)| !is_ok(text)) {
@@ -136,9 +126,7 @@ pub(super) fn scan_parquet(
         }
         let mut of_models = vec![None; if models.is_some() { rows } else { 0 }];
         if let (Some(place), Some(models)) = (of_model, &mut models) {
-            let whole = Whole::of(&schema.column(place)).unwrap_or(Whole::Signed);
-            let cells = group.get_column_reader(place).and_then(|cells| texts(cells, rows, whole));
-            let cells = cells.map_err(failed)?;
+            let cells = cells(place).map_err(failed)?.texts();
             of_models = cells.iter().map(|cell| models.number(cell.as_deref()?)).collect();
         }
         look(&numbers, &of_models);
@@ -200,107 +188,4 @@ pub(super) fn unread_codec(compression: Compression) -> Option<String> {
         "is compressed with {codec}, which is not read: write the table with snappy, gzip, lz4 or no compression, in polars by \
          df.write_parquet(path, compression=\"snappy\")"
     ))
-}
-
-/// What the highest bit of a whole number is.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Whole {
-    Signed,
-    Unsigned,
-}
-
-impl Whole {
-    /// Of a column whose numbers mean what they are. The older of the two ways to say what a number means stands alone in the files of some
-    /// writers, DuckDB's among them.
-    pub(super) fn of(column: &ColumnDescriptor) -> Option<Self> {
-        match column.logical_type_ref() {
-            Some(LogicalType::Integer(whole)) if whole.is_signed => return Some(Self::Signed),
-            Some(LogicalType::Integer(_)) => return Some(Self::Unsigned),
-            Some(_) => return None,
-            None => {}
-        }
-        match column.converted_type() {
-            ConvertedType::NONE
-            | ConvertedType::INT_8
-            | ConvertedType::INT_16
-            | ConvertedType::INT_32
-            | ConvertedType::INT_64 => Some(Self::Signed),
-            ConvertedType::UINT_8
-            | ConvertedType::UINT_16
-            | ConvertedType::UINT_32
-            | ConvertedType::UINT_64 => Some(Self::Unsigned),
-            ConvertedType::UTF8
-            | ConvertedType::MAP
-            | ConvertedType::MAP_KEY_VALUE
-            | ConvertedType::LIST
-            | ConvertedType::ENUM
-            | ConvertedType::DECIMAL
-            | ConvertedType::DATE
-            | ConvertedType::TIME_MILLIS
-            | ConvertedType::TIME_MICROS
-            | ConvertedType::TIMESTAMP_MILLIS
-            | ConvertedType::TIMESTAMP_MICROS
-            | ConvertedType::JSON
-            | ConvertedType::BSON
-            | ConvertedType::INTERVAL => None,
-        }
-    }
-}
-
-/// The cells of a column as texts: of numbers what they are.
-pub(super) fn texts(
-    reader: ColumnReader,
-    rows: usize,
-    whole: Whole,
-) -> Result<Vec<Option<String>>, ParquetError> {
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).trim_end_matches('\0').to_owned();
-    Ok(match reader {
-        ColumnReader::ByteArrayColumnReader(reader) => {
-            read(reader, rows)?.into_iter().map(|cell| cell.map(|c| text(c.data()))).collect()
-        }
-        ColumnReader::FixedLenByteArrayColumnReader(reader) => {
-            read(reader, rows)?.into_iter().map(|cell| cell.map(|c| text(c.data()))).collect()
-        }
-        ColumnReader::Int96ColumnReader(reader) => {
-            read(reader, rows)?.into_iter().map(|cell| cell.map(|c| format!("{c:?}"))).collect()
-        }
-        ColumnReader::BoolColumnReader(_)
-        | ColumnReader::Int32ColumnReader(_)
-        | ColumnReader::Int64ColumnReader(_)
-        | ColumnReader::FloatColumnReader(_)
-        | ColumnReader::DoubleColumnReader(_) => {
-            let numbers = numbers(reader, rows, whole)?;
-            numbers.into_iter().map(|cell| cell.map(|number| number.to_string())).collect()
-        }
-    })
-}
-
-pub(super) fn numbers(
-    reader: ColumnReader,
-    rows: usize,
-    whole: Whole,
-) -> Result<Vec<Option<f64>>, ParquetError> {
-    macro_rules! all {
-        ($reader:expr, $number:expr) => {
-            read($reader, rows)?.into_iter().map(|cell| cell.map($number)).collect()
-        };
-    }
-    Ok(match reader {
-        ColumnReader::BoolColumnReader(r) => all!(r, |flag| f64::from(u8::from(flag))),
-        ColumnReader::Int32ColumnReader(r) if whole == Whole::Unsigned => {
-            all!(r, |whole| f64::from(whole.cast_unsigned()))
-        }
-        ColumnReader::Int64ColumnReader(r) if whole == Whole::Unsigned => {
-            all!(r, |whole| whole.cast_unsigned() as f64)
-        }
-        ColumnReader::Int32ColumnReader(r) => all!(r, f64::from),
-        ColumnReader::Int64ColumnReader(r) => all!(r, |whole| whole as f64),
-        ColumnReader::FloatColumnReader(r) => all!(r, f64::from),
-        ColumnReader::DoubleColumnReader(r) => all!(r, |number| number),
-        ColumnReader::Int96ColumnReader(_)
-        | ColumnReader::ByteArrayColumnReader(_)
-        | ColumnReader::FixedLenByteArrayColumnReader(_) => {
-            return Err(ParquetError::General("a column of no numbers".to_owned()));
-        }
-    })
 }

@@ -1,6 +1,6 @@
 //! Runs that stand twice in a table, where its columns `model` and `run` say which run a row is.
 
-use parquet::{column::reader::ColumnReader, errors::ParquetError, file::reader::FileReader};
+use parquet::{errors::ParquetError, file::reader::FileReader};
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
@@ -9,8 +9,9 @@ use std::{
 use super::{
     ForeignError, ForeignTable, Form,
     of_csv::{CsvText, broken, reader},
-    of_parquet::{Whole, names, numbers, open, texts, unread, unread_codec},
+    of_parquet::{names, open, unread, unread_codec},
     only_place,
+    parquet_cells::Cells,
     written::number,
 };
 use crate::{column::Column, spans::Spans};
@@ -89,7 +90,6 @@ fn look_parquet(path: &Path, mut look: impl FnMut(&str, Option<f64>)) -> Result<
     if places.iter().any(|place| schema.column(*place).max_rep_level() > 0) {
         return Ok(());
     }
-    let whole = places.map(|place| Whole::of(&schema.column(place)).unwrap_or(Whole::Signed));
     for group in 0..file.num_row_groups() {
         let group = file.get_row_group(group).map_err(failed)?;
         let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
@@ -98,38 +98,16 @@ fn look_parquet(path: &Path, mut look: impl FnMut(&str, Option<f64>)) -> Result<
                 return Err(ForeignError::of_column(path, &names[place], &problem));
             }
         }
-        let cells = |place: usize| group.get_column_reader(place).map_err(failed);
-        let [models, runs] = [cells(places[0])?, cells(places[1])?];
-        let [of_model, of_run] = whole;
-        let models = texts(models, rows, of_model).map_err(failed)?;
-        let runs = numbers_or_texts(runs, rows, of_run).map_err(failed)?;
+        let cells = |place: usize| {
+            let cells = group.get_column_reader(place);
+            cells.and_then(|cells| Cells::read(cells, &schema.column(place), rows)).map_err(failed)
+        };
+        let (models, runs) = (cells(places[0])?.texts(), cells(places[1])?.numbers());
         for (model, run) in models.iter().zip(runs) {
             look(model.as_deref().unwrap_or_default(), run);
         }
     }
     Ok(())
-}
-
-/// The numbers of runs, which may be written as texts.
-fn numbers_or_texts(
-    reader: ColumnReader,
-    rows: usize,
-    whole: Whole,
-) -> Result<Vec<Option<f64>>, ParquetError> {
-    if matches!(
-        reader,
-        ColumnReader::ByteArrayColumnReader(_)
-            | ColumnReader::FixedLenByteArrayColumnReader(_)
-            | ColumnReader::Int96ColumnReader(_)
-    ) {
-        let texts = texts(reader, rows, whole)?;
-        return Ok(texts.iter().map(|cell| run(cell.as_deref()?)).collect());
-    }
-    numbers(reader, rows, whole)
-}
-
-fn run(cell: &str) -> Option<f64> {
-    number(cell.trim()).flatten()
 }
 
 fn look_csv(
@@ -145,7 +123,7 @@ fn look_csv(
     let mut row = csv::StringRecord::new();
     while reader.read_record(&mut row).map_err(|error| broken(path, &error))? {
         let cell = |place: usize| row.get(places[place]).unwrap_or_default();
-        look(cell(0), run(cell(1)));
+        look(cell(0), number(cell(1)).flatten());
     }
     Ok(())
 }

@@ -28,7 +28,7 @@ impl Numbering {
     /// Of a table, whose runs come in groups of so many: by the column `run` if all of its cells are whole numbers.
     ///
     /// # Errors
-    /// Runs have something in common, and it cannot be known which they are.
+    /// The column cannot be read, or runs have something in common, and it cannot be known which they are.
     pub(super) fn of(table: &ForeignTable, group: u64) -> Result<Self, ForeignError> {
         let name = match table.spelled(Column::RUN) {
             None if group == 1 => return Ok(Self::Rows),
@@ -38,7 +38,7 @@ impl Numbering {
         let mut among = Among { first: u64::MAX, last: 0, count: 0 };
         let mut all_whole = true;
         // As they are written: runs that failed are among them.
-        let read = table.scan_beside(&[], slice::from_ref(&name), |columns| {
+        table.scan_beside(&[], slice::from_ref(&name), |columns| {
             for cell in columns.first().into_iter().flatten() {
                 match cell.and_then(Column::run_named) {
                     Some(run) if run.is_multiple_of(group) => among.add(run / group),
@@ -46,12 +46,11 @@ impl Numbering {
                     None => all_whole = false,
                 }
             }
-        });
-        match read {
-            Ok(()) if all_whole => Ok(Self::ByColumn(among)),
-            Ok(()) | Err(_) if group == 1 => Ok(Self::Rows),
-            Ok(()) => Err(table.without_run()),
-            Err(error) => Err(error),
+        })?;
+        match all_whole {
+            true => Ok(Self::ByColumn(among)),
+            false if group == 1 => Ok(Self::Rows),
+            false => Err(table.without_run()),
         }
     }
 
