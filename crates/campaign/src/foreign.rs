@@ -67,14 +67,6 @@ enum Form {
     },
 }
 
-/// What is known of the column that says whether a run ended.
-#[derive(Clone, Copy, Debug)]
-struct StatusOf {
-    is_there: bool,
-    /// A study wrote it, whose reasons may be any words.
-    of_study: bool,
-}
-
 /// The numbers of some consecutive rows: of each column, one for each row, none where a cell is empty.
 pub type Columns = [Vec<Option<f64>>];
 
@@ -83,11 +75,11 @@ pub type Columns = [Vec<Option<f64>>];
 pub type OfModels = [Option<u64>];
 
 impl ForeignTable {
-    /// Opens a file, or a folder of Parquet files, which are taken in the order of their names. What begins as Parquet does is
+    /// Opens a file, or a folder of Parquet files of the same columns, which are taken in the order of their names. What begins as Parquet does is
     /// Parquet; all else is CSV, whose first line has the names of the columns, with `,`, `;` or a tab between them.
     ///
     /// # Errors
-    /// There is no such file, it is no regular file, or its head cannot be read.
+    /// There is no such file, it is no regular file, its head cannot be read, or files of a folder have other columns than the first.
     pub fn open(path: &Path) -> Result<Self, ForeignError> {
         let failed = |problem: String| ForeignError::new(path, problem);
         let unread = |error: io::Error| failed(error.to_string());
@@ -98,8 +90,15 @@ impl ForeignTable {
             let Folder { files, beside } = Folder::read(path)?;
             let none = || failed(Origin::why_none(path, without_tables(path)));
             let first = files.first().ok_or_else(none)?;
-            let columns = parquet_columns(first)?;
-            let table = Self::new(path, files, (Form::Parquet, columns), origin()?);
+            let (columns, origin) = (parquet_columns(first)?, origin()?);
+            // What a study says of its files tells any other from them.
+            for file in files.iter().filter(|_| origin.is_none()) {
+                let there = parquet_columns(file)?;
+                if let Some(problem) = other_columns(&there, (first, &columns)) {
+                    return Err(ForeignError::new(file, problem));
+                }
+            }
+            let table = Self::new(path, files, (Form::Parquet, columns), origin);
             return Ok(Self { beside, ..table });
         }
         if !found.is_file() {
@@ -313,10 +312,11 @@ impl ForeignTable {
         mut models: Option<Models>,
         mut look: impl FnMut(&Columns, &OfModels),
     ) -> Result<(), ForeignError> {
-        let status = StatusOf { is_there: self.is_run_table(), of_study: self.origin.is_some() };
+        // A study may call the reason why a run failed by any words.
+        let of_study = self.origin.is_some();
         for file in &self.files {
             match &self.form {
-                Form::Parquet => scan_parquet(file, columns, status, models.as_mut(), &mut look)?,
+                Form::Parquet => scan_parquet(file, columns, of_study, models.as_mut(), &mut look)?,
                 Form::Csv { separator, text } => {
                     let form = (*separator, self.columns.len());
                     scan_csv(file, text, form, columns, models.as_mut(), &mut look)?;
@@ -340,6 +340,23 @@ fn without_tables(path: &Path) -> String {
         "it has no .parquet file, and below it are the tables of its runs: name {}",
         names.join(" or ")
     )
+}
+
+/// Why a file of a folder is not a part of one table with the first one, if it is none.
+fn other_columns(there: &[String], (first, columns): (&Path, &[String])) -> Option<String> {
+    let most = there.len().max(columns.len());
+    let at = (0..most).find(|at| there.get(*at) != columns.get(*at))?;
+    let told = |columns: &[String]| match columns.get(at) {
+        Some(name) => format!("{name:?} as its column {}", at + 1),
+        None => format!("no column {}", at + 1),
+    };
+    Some(format!(
+        "it has {}, and {} has {}: the files of a folder are one table, and must have the same columns in the same order. Judge other tables in a folder \
+         of their own",
+        told(there),
+        first.display(),
+        told(columns)
+    ))
 }
 
 /// Where columns are among those that there are.

@@ -11,7 +11,7 @@ use parquet::{
 use std::{collections::HashMap, fs::File, path::Path};
 
 use super::{
-    Columns, ForeignError, OfModels, StatusOf,
+    Columns, ForeignError, OfModels,
     models::Models,
     parquet_cells::{Cells, has_numbers},
     places,
@@ -44,7 +44,7 @@ pub(super) fn unread(path: &Path, error: &ParquetError) -> ForeignError {
 pub(super) fn scan_parquet(
     path: &Path,
     (measured, written): (&[String], &[String]),
-    known: StatusOf,
+    of_study: bool,
     mut models: Option<&mut Models>,
     look: &mut impl FnMut(&Columns, &OfModels),
 ) -> Result<(), ForeignError> {
@@ -73,11 +73,6 @@ pub(super) fn scan_parquet(
         }
     }
     let status = status(&there);
-    if status.is_some() != known.is_there {
-        let problem = "some files of the folder have the columns model, run and status, and some have not: judge the run tables of studies \
-                       apart from other tables";
-        return Err(ForeignError::new(path, problem));
-    }
     if let Some(place) = status {
         let column = schema.column(place);
         if column.physical_type() != Physical::BYTE_ARRAY || column.max_rep_level() > 0 {
@@ -115,7 +110,7 @@ pub(super) fn scan_parquet(
             let texts = read(texts, rows).map_err(failed)?;
             for (row, text) in texts.iter().enumerate().filter(|(_, text)| !is_ok(text)) {
                 let text = text.as_ref().map(|text| String::from_utf8_lossy(text.data()));
-                let problem = if known.of_study { None } else { no_reason(text.as_deref()) };
+                let problem = if of_study { None } else { no_reason(text.as_deref()) };
                 if let Some(problem) = problem {
                     let of_row = format!("of row {}, from 0, is {problem}", first + row);
                     return Err(wrong(place, &of_row));
