@@ -1,5 +1,6 @@
 //! Tables of numbers that other programs wrote, a row for each run: Parquet, a folder of Parquet files, or CSV.
 
+mod labels;
 mod models;
 mod no_runs;
 mod of_csv;

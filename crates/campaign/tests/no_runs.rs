@@ -151,7 +151,7 @@ proptest! {
     }
 }
 
-/// Pandas writes the names of the rows behind all other columns, and says so beside the table. Without that, the first column of texts has the names,
+/// Pandas writes the names of the rows behind all other columns, and says so beside the table. Without that, the first column of names has them,
 /// and without a column `run` only: texts beside numbers of runs may say anything.
 #[test]
 fn names_of_rows_are_found_in_parquet() {

@@ -286,6 +286,8 @@ impl fmt::Display for Fleet {
 }
 
 #[cfg(test)]
+mod any_form;
+#[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;

@@ -4,15 +4,15 @@ use gyradius_statistics::SummaryNames;
 use parquet::{errors::ParquetError, file::reader::FileReader};
 use std::{
     io::Read,
+    mem,
     ops::ControlFlow,
     path::{Path, PathBuf},
 };
 
 use super::{
     ForeignError, ForeignTable, Form,
-    models::Models,
     of_csv::{CsvText, reader},
-    of_parquet::{first_text, index_of_pandas, names, open, unread, unread_codec},
+    of_parquet::{cells, open, unread},
     parquet_cells::{Cells, has_numbers},
     place_of,
     written::number,
@@ -53,6 +53,8 @@ enum NoRun {
 #[derive(Debug, Default)]
 struct Seen {
     names: SummaryNames,
+    /// Whether one was there that is not empty.
+    is_begun: bool,
     /// Whether one is the number of a run, and the first that is none.
     is_numbered: bool,
     without: Option<(PathBuf, String, String)>,
@@ -68,17 +70,11 @@ struct Looked {
 }
 
 impl Looked {
-    /// The columns that tell: `run`, the first one, of which models have any names beside `run`, the index of pandas, and, without a column `run`,
-    /// the first one of texts.
-    fn of(columns: &[String], index: &[String], first_text: Option<usize>) -> Vec<Self> {
+    /// The columns that tell: `run`, and those that may name rows.
+    fn of(columns: &[String], labels: Vec<usize>) -> Vec<Self> {
         let [_, run, _] = Column::first();
         let run = place_of(columns, &run);
-        let first = (!columns.is_empty()).then_some(0);
-        let first = first.filter(|place| run.is_none() || Models::place(columns) != Some(*place));
-        let first_text = first_text.filter(|_| run.is_none());
-        let index = columns.iter().enumerate().filter(|(_, name)| index.contains(name));
-        let mut places: Vec<usize> =
-            run.into_iter().chain(first).chain(first_text).chain(index.map(|(at, _)| at)).collect();
+        let mut places: Vec<usize> = run.into_iter().chain(labels).collect();
         places.sort_unstable();
         places.dedup();
         let looked = |place: usize| {
@@ -92,7 +88,9 @@ impl Looked {
     fn add(&mut self, path: &Path, at: impl Fn() -> String, cell: &str) -> ControlFlow<NoRunError> {
         let cell = cell.trim();
         let found = number(cell);
-        if self.seen.names.sums_up(cell) && found.is_none() {
+        // An empty cell is no name, and of numbers, of which there may be many, the first says as much as all.
+        let is_first = found != Some(None) && !mem::replace(&mut self.seen.is_begun, true);
+        if (found.is_none() || is_first) && self.seen.names.sums_up(cell) && found.is_none() {
             let (path, at, column) = (path.to_owned(), at(), self.name.clone());
             let problem = NoRun::Summary { word: cell.to_owned() };
             return ControlFlow::Break(NoRunError { path, at, column, problem });
@@ -131,8 +129,7 @@ impl ForeignTable {
         if self.origin.is_some() {
             return Ok(None);
         }
-        let (index, first_text) = self.labels()?;
-        let mut looked = Looked::of(&self.columns, &index, first_text);
+        let mut looked = Looked::of(&self.columns, self.labels()?);
         for path in &self.files {
             let found = match &self.form {
                 Form::Parquet => look_parquet(path, &mut looked)?,
@@ -145,24 +142,6 @@ impl ForeignTable {
             }
         }
         Ok(looked.into_iter().find_map(Looked::end))
-    }
-
-    /// The columns that pandas calls the index, and the first column of texts.
-    fn labels(&self) -> Result<(Vec<String>, Option<usize>), ForeignError> {
-        match (&self.form, self.files.first()) {
-            (Form::Parquet, Some(path)) => {
-                let file = open(path).map_err(|error| unread(path, &error))?;
-                Ok((index_of_pandas(&file), first_text(&file)))
-            }
-            (Form::Csv { separator, text }, Some(path)) => {
-                let mut reader = reader(path, text, (*separator, self.columns.len()))?;
-                let mut row = csv::StringRecord::new();
-                let is_read = matches!(reader.read_record(&mut row), Ok(true));
-                let is_text = |cell: &str| number(cell).is_none();
-                Ok((Vec::new(), row.iter().position(is_text).filter(|_| is_read)))
-            }
-            (_, None) => Ok((Vec::new(), None)),
-        }
     }
 }
 
@@ -239,25 +218,19 @@ fn look_parquet(
 ) -> Result<ControlFlow<NoRunError>, ForeignError> {
     let failed = |error: ParquetError| unread(path, &error);
     let file = open(path).map_err(failed)?;
-    let there = names(&file);
     let schema = file.metadata().file_metadata().schema_descr_ptr();
     let mut first = 0;
     for group in 0..file.num_row_groups() {
         let group = file.get_row_group(group).map_err(failed)?;
         let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
         for one in &mut *looked {
-            // Another file of the folder may have its columns in another order.
-            let Some(place) = there.iter().position(|name| *name == one.name) else { continue };
-            let column = schema.column(place);
-            let codec = unread_codec(group.metadata().column(place).compression());
+            let column = schema.column(one.place);
             let may_tell = one.is_run || !has_numbers(&column);
-            if column.max_rep_level() > 0 || codec.is_some() || !may_tell {
+            if column.max_rep_level() > 0 || !may_tell {
                 continue;
             }
-            let cells = group.get_column_reader(place);
-            let cells = cells.and_then(|cells| Cells::read(cells, &column, rows));
             let at = |row: usize| format!("row {}", first + row + 1);
-            match cells.map_err(failed)? {
+            match cells(path, &*group, one.place)? {
                 Cells::Texts(cells) => {
                     for (row, cell) in cells.into_iter().enumerate() {
                         let found = one.add(path, || at(row), cell.as_deref().unwrap_or_default());

@@ -2,11 +2,8 @@
 
 use parquet::{
     basic::{Compression, Type as Physical},
-    column::reader::ColumnReader,
-    data_type::ByteArray,
     errors::ParquetError,
-    file::reader::{FileReader, SerializedFileReader},
-    schema::types::ColumnDescPtr,
+    file::reader::{FileReader, RowGroupReader, SerializedFileReader},
 };
 use std::{collections::HashMap, fs::File, path::Path};
 
@@ -21,7 +18,6 @@ use super::{
 use crate::{
     failure::{Failure, OK},
     runs_error::said,
-    stored::read,
 };
 
 pub(super) fn parquet_columns(path: &Path) -> Result<Vec<String>, ForeignError> {
@@ -89,27 +85,13 @@ pub(super) fn scan_parquet(
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(failed)?;
         let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
-        for place in places.iter().chain(&status).chain(&of_model) {
-            if let Some(problem) = unread_codec(group.metadata().column(*place).compression()) {
-                return Err(wrong(*place, &problem));
-            }
-        }
-        let cells = |place: usize| {
-            Cells::read(group.get_column_reader(place)?, &schema.column(place), rows)
-        };
+        let cells = |place: usize| cells(path, &*group, place);
         let numbers = places.iter().map(|place| cells(*place).map(Cells::numbers));
-        let numbers = numbers.collect::<Result<Vec<_>, ParquetError>>();
-        let mut numbers = numbers.map_err(failed)?;
-        if let Some(place) = status
-            && let ColumnReader::ByteArrayColumnReader(texts) =
-                group.get_column_reader(place).map_err(failed)?
-        {
-            let is_ok = |text: &Option<ByteArray>| {
-                text.as_ref().is_some_and(|text| text.data().trim_ascii() == OK.as_bytes())
-            };
-            let texts = read(texts, rows).map_err(failed)?;
+        let mut numbers = numbers.collect::<Result<Vec<_>, ForeignError>>()?;
+        if let Some(place) = status {
+            let texts = cells(place)?.texts();
+            let is_ok = |text: &Option<String>| text.as_deref() == Some(OK);
             for (row, text) in texts.iter().enumerate().filter(|(_, text)| !is_ok(text)) {
-                let text = text.as_ref().map(|text| String::from_utf8_lossy(text.data()));
                 let problem = if of_study { None } else { no_reason(text.as_deref()) };
                 if let Some(problem) = problem {
                     let of_row = format!("of row {}, from 0, is {problem}", first + row);
@@ -121,13 +103,29 @@ pub(super) fn scan_parquet(
         }
         let mut of_models = vec![None; if models.is_some() { rows } else { 0 }];
         if let (Some(place), Some(models)) = (of_model, &mut models) {
-            let cells = cells(place).map_err(failed)?.texts();
+            let cells = cells(place)?.texts();
             of_models = cells.iter().map(|cell| models.number(cell.as_deref()?)).collect();
         }
         look(&numbers, &of_models);
         first += rows;
     }
     Ok(())
+}
+
+/// The cells of a column in a group of rows.
+pub(super) fn cells(
+    path: &Path,
+    group: &dyn RowGroupReader,
+    place: usize,
+) -> Result<Cells, ForeignError> {
+    let chunk = group.metadata().column(place);
+    if let Some(problem) = unread_codec(chunk.compression()) {
+        return Err(ForeignError::of_column(path, &chunk.column_path().string(), &problem));
+    }
+    let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
+    let cells = group.get_column_reader(place);
+    let cells = cells.and_then(|cells| Cells::read(cells, chunk.column_descr(), rows));
+    cells.map_err(|error| unread(path, &error))
 }
 
 /// What pandas says of a table beside it, if it wrote the file.
@@ -144,16 +142,6 @@ pub(super) fn index_of_pandas(reader: &SerializedFileReader<File>) -> Vec<String
     columns.filter_map(|column| column.as_str().map(str::to_owned)).collect()
 }
 
-/// The first column of texts.
-pub(super) fn first_text(reader: &SerializedFileReader<File>) -> Option<usize> {
-    let schema = reader.metadata().file_metadata().schema_descr();
-    let is_text = |column: &ColumnDescPtr| {
-        let texts = [Physical::BYTE_ARRAY, Physical::FIXED_LEN_BYTE_ARRAY];
-        texts.contains(&column.physical_type()) && column.max_rep_level() == 0
-    };
-    schema.columns().iter().position(is_text)
-}
-
 /// The columns of durations with their types. Parquet has none: what writes them with pandas says so beside the table, and in it are whole
 /// numbers of some unit.
 fn durations(reader: &SerializedFileReader<File>) -> HashMap<String, String> {
@@ -168,7 +156,7 @@ fn durations(reader: &SerializedFileReader<File>) -> HashMap<String, String> {
 }
 
 /// Why a column is not read that is compressed so, if it is not: what these need is in C, or large.
-pub(super) fn unread_codec(compression: Compression) -> Option<String> {
+fn unread_codec(compression: Compression) -> Option<String> {
     let codec = match compression {
         Compression::UNCOMPRESSED
         | Compression::SNAPPY

@@ -9,9 +9,8 @@ use std::{
 use super::{
     ForeignError, ForeignTable, Form,
     of_csv::{CsvText, broken, reader},
-    of_parquet::{names, open, unread, unread_codec},
+    of_parquet::{cells, names, open, unread},
     only_place,
-    parquet_cells::Cells,
     written::number,
 };
 use crate::{column::Column, spans::Spans};
@@ -92,16 +91,7 @@ fn look_parquet(path: &Path, mut look: impl FnMut(&str, Option<f64>)) -> Result<
     }
     for group in 0..file.num_row_groups() {
         let group = file.get_row_group(group).map_err(failed)?;
-        let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
-        for place in places {
-            if let Some(problem) = unread_codec(group.metadata().column(place).compression()) {
-                return Err(ForeignError::of_column(path, &names[place], &problem));
-            }
-        }
-        let cells = |place: usize| {
-            let cells = group.get_column_reader(place);
-            cells.and_then(|cells| Cells::read(cells, &schema.column(place), rows)).map_err(failed)
-        };
+        let cells = |place: usize| cells(path, &*group, place);
         let (models, runs) = (cells(places[0])?.texts(), cells(places[1])?.numbers());
         for (model, run) in models.iter().zip(runs) {
             look(model.as_deref().unwrap_or_default(), run);
