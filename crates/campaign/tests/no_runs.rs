@@ -149,6 +149,21 @@ proptest! {
             }
         }
     }
+
+    /// A row with the number of a run is a run, whatever the number and wherever the row stands: one that failed may have a text where others have
+    /// numbers.
+    #[test]
+    fn a_run_with_a_number_is_no_row_of_units(
+        (first, others) in (0..4_u64, 1..9_u64),
+        place in any::<prop::sample::Index>(),
+        heading in prop::sample::select(vec!["run", "RUN"]),
+        text in prop::sample::select(vec!["timeout", "[s]", "m"]),
+    ) {
+        let mut rows: Vec<String> = (1..=others).map(|at| format!("{},0.5,0\n", first + at)).collect();
+        rows.insert(place.index(rows.len() + 1), format!("{first},,{text}\n"));
+        let text = format!("{heading},x,error\n{}", rows.concat());
+        prop_assert_eq!(judged(&text), Ok([others + 1, 1]), "{}", text);
+    }
 }
 
 /// Pandas writes the names of the rows behind all other columns, and says so beside the table. Without that, the first column of names has them,

@@ -154,10 +154,12 @@ struct AboveNumbers {
 }
 
 impl AboveNumbers {
-    /// Of the first row. A unit may be 1.
-    fn of(row: &csv::StringRecord, at: String) -> Self {
-        let is_number = |cell: &str| cell != "1" && number(cell).flatten().is_some();
-        if row.iter().any(is_number) {
+    /// Of the first row. A unit may be 1, and so may the number of a run be.
+    fn of(row: &csv::StringRecord, run: Option<usize>, at: String) -> Self {
+        let is_number = |(place, cell): (usize, &str)| {
+            (cell != "1" || run == Some(place)) && number(cell).flatten().is_some()
+        };
+        if row.iter().enumerate().any(is_number) {
             return Self::default();
         }
         let texts = row.iter().enumerate().filter(|(_, cell)| number(cell).is_none());
@@ -192,6 +194,7 @@ fn look_csv(
 ) -> Result<ControlFlow<NoRunError>, ForeignError> {
     let mut reader = reader(path, text, form)?;
     let mut row = csv::StringRecord::new();
+    let run = looked.iter().find(|one| one.is_run).map(|one| one.place);
     let mut above: Option<AboveNumbers> = None;
     // What cannot be read is told of where the numbers are.
     while matches!(reader.read_record(&mut row), Ok(true)) {
@@ -205,7 +208,7 @@ fn look_csv(
         }
         match &mut above {
             Some(above) => above.add(&row),
-            None => above = Some(AboveNumbers::of(&row, at())),
+            None => above = Some(AboveNumbers::of(&row, run, at())),
         }
     }
     let found = above.and_then(|above| above.end(path, &mut reader));
