@@ -2,7 +2,7 @@
 
 use gyradius_campaign::{
     Column, ExternalSimulation, FailedRuns, Failure, ForeignTable, Inputs, Judgement, Judging,
-    Requirement, RunInputs, Runs, Simulator, SimulatorFunction, Surveys, run, threads,
+    Program, Requirement, RunInputs, Runs, Simulator, SimulatorFunction, Surveys, run, threads,
 };
 use gyradius_statistics::Confidence;
 use proptest::prelude::*;
@@ -151,6 +151,49 @@ fn infinite_numbers_are_failures() {
             let read: Judgement =
                 serde_json::from_str(&serde_json::to_string(&judged[0]).unwrap()).unwrap();
             assert_eq!(read, judged[0]);
+        }
+    }
+}
+
+/// What a process that is started for one run left in its file is of this run, whatever else is in the file and however the process ended.
+#[cfg(unix)]
+#[test]
+fn what_is_infinite_in_a_file_stays() {
+    let outputs = vec![Column::number("y", "1", "An output.")];
+    let runs = 2;
+    for (cell, y) in [("1e999", f64::INFINITY), ("-Infinity", f64::NEG_INFINITY)] {
+        for (run, behind, then) in [
+            ("$run", "}", "exit 3"),
+            ("$run", "}", "sleep 100"),
+            ("$run", "} trailing", ""),
+            ("$run", "", ""),
+            ("$run", "", "sleep 100"),
+            ("7", "}", ""),
+            ("7", "};", "exit 3"),
+        ] {
+            let script = format!(
+                "read -r line < input.json; run=${{line#*'\"run\":'}}; run=${{run%%,*}}; \
+                 printf '%s' '{{\"run\":'\"{run}\"',\"outputs\":{{\"y\":{cell}}}{behind}' > output.json; {then}"
+            );
+            let program =
+                Program::new(&["sh".into(), "-c".into(), script], Path::new("/")).unwrap();
+            let program = program.with_timeout(1.0).unwrap().per_run();
+            let simulator = Simulator::start(program).unwrap();
+            let simulation =
+                ExternalSimulation::new(&simulator, 7, "any", Nothing, outputs.clone());
+            let table = gyradius_campaign::run(
+                &simulation,
+                "any",
+                runs,
+                &threads(Some(2)).unwrap(),
+                &|_| {},
+            )
+            .unwrap();
+            for (place, row) in table.rows().enumerate() {
+                assert!(row.failure().is_some(), "{run} {behind} {then}");
+                let found = table.numbers("y").unwrap().get(place);
+                assert_eq!(found, Some(y), "{run} {behind} {then}: {:?}", row.failure());
+            }
         }
     }
 }

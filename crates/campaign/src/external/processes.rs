@@ -127,6 +127,11 @@ impl Processes {
         &self.program
     }
 
+    /// Whether each run has a process and files of its own.
+    pub(super) fn is_per_run(&self) -> bool {
+        self.program.is_per_run()
+    }
+
     /// A process that waits, if there is one.
     pub(super) fn take(&self) -> Option<Child> {
         self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop()
@@ -152,7 +157,7 @@ impl Processes {
         if self.of_machine.get().is_some() {
             return Err(Trouble::Stopped);
         }
-        if self.program.is_per_run() {
+        if self.is_per_run() {
             return self.ask_with_files(request, read);
         }
         let ask = |mut child: Child, kept: &mut Option<Child>| {
@@ -253,7 +258,9 @@ impl Processes {
         match ended {
             Ok(()) => answer(),
             // Nothing may leave out a run that came to an infinite number, whatever became of the process after that.
-            Err(failed @ Trouble::Status { .. }) => Err(failed.with_infinite_of(answer().err())),
+            Err(failed @ (Trouble::Status { .. } | Trouble::Timeout { .. })) => {
+                Err(failed.with_infinite_of(answer().err()))
+            }
             Err(other) => Err(other),
         }
     }

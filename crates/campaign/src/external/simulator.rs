@@ -152,7 +152,7 @@ impl Simulator {
                 line.push(b'\n');
                 processes.ask(&line, kept, |answer| {
                     came(&|| String::from_utf8_lossy(answer).into_owned());
-                    answer::read(answer, inputs.run(), outputs)
+                    answer::read(answer, inputs.run(), processes.is_per_run(), outputs)
                 })
             }
             Way::Function(function) => {
