@@ -70,12 +70,15 @@ impl Origin {
         if fs::symlink_metadata(&manifest).is_err_and(|e| e.kind() == io::ErrorKind::NotFound) {
             return Ok(None);
         }
-        let read = Manifest::read(folder).map_err(|error| {
-            io::Error::other(format!(
-                "{}, which says how its runs are judged: {error}",
-                manifest.display()
-            ))
-        })?;
+        let read = match Manifest::read(folder) {
+            Err(_) if is_of_another(&manifest) => return Ok(None),
+            Err(error) => {
+                let manifest = manifest.display();
+                let problem = format!("{manifest}, which says how its runs are judged: {error}");
+                return Err(io::Error::other(problem));
+            }
+            Ok(read) => read,
+        };
         let (counting, rows) = (read.counting(), read.kept().rows());
         // The table is the folder of a model, or one file in it.
         let end = |up: usize| whole.ancestors().nth(up).and_then(Path::file_name);
@@ -86,4 +89,12 @@ impl Origin {
         let blocks = read.blocks_of(model).into_iter().filter(of_table).cloned().collect();
         Ok(Some(Self { manifest, counting, rows, folder: folder.to_owned(), blocks }))
     }
+}
+
+/// Whether a file that is called as that of a campaign is another program's: JSON that says something, and no version of gyradius.
+fn is_of_another(manifest: &Path) -> bool {
+    let told = fs::read(manifest).ok().and_then(|text| serde_json::from_slice(&text).ok());
+    told.is_some_and(|told: serde_json::Value| {
+        told.get("gyradius_version").is_none() && told != serde_json::json!({})
+    })
 }

@@ -1,6 +1,7 @@
 //! The tests of the crate from outside, in one program, which is linked once.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+mod another_campaign;
 mod blocks;
 mod bounds;
 mod campaign;
