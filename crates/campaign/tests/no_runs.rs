@@ -189,7 +189,7 @@ fn names_of_rows_are_found_in_parquet() {
             if word == "case 3" || may_be_anything {
                 assert_eq!(found.unwrap()[0].runs(), 3, "{index} {others:?}");
             } else {
-                let said = format!("row 3, column {names:?}: the row says {word:?}");
+                let said = format!("row 2 (from 0), column {names:?}: the row says {word:?}");
                 let refused = found.unwrap_err().to_string();
                 assert!(refused.contains(&said), "{refused}");
             }

@@ -400,7 +400,7 @@ fn a_status_is_ok_or_a_reason_or_refused() {
             let of_file = ForeignTable::open(&path).unwrap();
             for (table, [one, other]) in [
                 (of_csv, ["line 2,", "line 3,"]),
-                (of_file, ["row 0,", "row 1,"]),
+                (of_file, ["row 0 (from 0),", "row 1 (from 0),"]),
             ] {
                 let judged = Judgement::of_table(&requirement, &table);
                 match (judged, of_first, of_second) {
@@ -448,7 +448,7 @@ fn rows_that_are_no_runs_are_seen() {
         for (name, run_first) in [("run", true), ("Run", false), ("case", true), ("case", false)] {
             let named: Stored<'_> = (name, text.0, text.1, text.2);
             let found = found(&if run_first { [named, X] } else { [X, named] });
-            let said = format!("row 3, column {name:?}: the row says \"Mean\"");
+            let said = format!("row 2 (from 0), column {name:?}: the row says \"Mean\"");
             assert!(found.as_ref().is_err_and(|refused| refused.contains(&said)), "{found:?}");
         }
         let model: Stored<'_> = ("model", text.0, text.1, text.2);
@@ -458,7 +458,7 @@ fn rows_that_are_no_runs_are_seen() {
             ("run", Physical::BYTE_ARRAY, ConvertedType::UTF8, &["0", "1", "last"]);
         let refused = found(&[model, run, X]).unwrap_err();
         assert!(
-            refused.contains("row 3, column \"run\": \"last\" is not the number of a run"),
+            refused.contains("row 2 (from 0), column \"run\": \"last\" is not the number of a run"),
             "{refused}"
         );
     }

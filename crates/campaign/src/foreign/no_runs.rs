@@ -12,7 +12,7 @@ use std::{
 use super::{
     ForeignError, ForeignTable, Form,
     of_csv::{CsvText, reader},
-    of_parquet::{cells, open, unread},
+    of_parquet::{cells, open, row_in_file, unread},
     parquet_cells::{Cells, has_numbers},
     place_of,
     written::number,
@@ -232,7 +232,7 @@ fn look_parquet(
             if column.max_rep_level() > 0 || !may_tell {
                 continue;
             }
-            let at = |row: usize| format!("row {}", first + row + 1);
+            let at = |row: usize| row_in_file(first + row);
             match cells(path, &*group, one.place)? {
                 Cells::Texts(cells) => {
                     for (row, cell) in cells.into_iter().enumerate() {

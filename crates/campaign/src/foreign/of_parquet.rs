@@ -5,7 +5,7 @@ use parquet::{
     errors::ParquetError,
     file::reader::{FileReader, RowGroupReader, SerializedFileReader},
 };
-use std::{collections::HashMap, fs::File, path::Path};
+use std::{collections::HashMap, fmt, fs::File, path::Path};
 
 use super::{
     Columns, ForeignError, OfModels,
@@ -94,8 +94,9 @@ pub(super) fn scan_parquet(
             for (row, text) in texts.iter().enumerate().filter(|(_, text)| !is_ok(text)) {
                 let problem = if of_study { None } else { no_reason(text.as_deref()) };
                 if let Some(problem) = problem {
-                    let of_row = format!("of row {}, from 0, is {problem}", first + row);
-                    return Err(wrong(place, &of_row));
+                    let at = row_in_file(first + row);
+                    let problem = format!("{at}, column {:?}: {problem}", there[place]);
+                    return Err(ForeignError::new(path, problem));
                 }
                 let numbers = numbers[..measured.len()].iter_mut().map(|numbers| &mut numbers[row]);
                 numbers.for_each(|number| *number = number.filter(|x| Failure::has_number(*x)));
@@ -126,6 +127,11 @@ pub(super) fn cells(
     let cells = group.get_column_reader(place);
     let cells = cells.and_then(|cells| Cells::read(cells, chunk.column_descr(), rows));
     cells.map_err(|error| unread(path, &error))
+}
+
+/// How a row of a Parquet file is called, which is counted from 0, as libraries of tables count.
+pub(super) fn row_in_file(row: impl fmt::Display) -> String {
+    format!("row {row} (from 0)")
 }
 
 /// What pandas says of a table beside it, if it wrote the file.

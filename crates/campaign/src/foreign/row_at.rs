@@ -6,7 +6,7 @@ use std::path::Path;
 use super::{
     ForeignTable, Form,
     of_csv::{CsvText, reader},
-    of_parquet::open,
+    of_parquet::{open, row_in_file},
 };
 
 impl ForeignTable {
@@ -28,14 +28,14 @@ impl ForeignTable {
                         Some(rest) => before = rest,
                         None => {
                             let name = path.file_name().unwrap_or_default().display();
-                            return format!("row {before} (from 0) of {name}");
+                            return format!("{} of {name}", row_in_file(before));
                         }
                     }
                 }
             }
         }
         // The files have changed since the row was seen.
-        format!("row {row} (from 0)")
+        row_in_file(row)
     }
 }
 
