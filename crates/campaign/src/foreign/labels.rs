@@ -83,6 +83,10 @@ impl ForeignTable {
                                 seen.add(cell);
                             }
                         }
+                        // Most tables hold numbers alone, which the first row tells.
+                        if seen.iter().all(|seen| seen.has_number) {
+                            return Ok(seen);
+                        }
                     }
                 }
             }
