@@ -104,6 +104,12 @@ impl AssemblyPart {
         &self.findings
     }
 
+    /// Whether draws differ: some deviation is stated. All draws of a part that does not vary are the same to the bit.
+    #[must_use]
+    pub fn varies(&self) -> bool {
+        self.statement.deviations != [0.0; 10]
+    }
+
     /// Whether ten independent Gaussian numbers with the stated means and deviations, drawn once, are a body's: what is
     /// commonly done instead.
     pub fn naive_draw_is_possible<R: Rng + ?Sized>(&self, rng: &mut R) -> bool {

@@ -1,12 +1,15 @@
 //! Draws of a whole from those of its parts, each from a stream of its own.
 
-use gyradius_campaign::{Cell, Column, Failure, Simulation, Streams, Table, TableError};
+use gyradius_campaign::{
+    CampaignError, Cell, Column, Failure, Simulation, Streams, Table, TableError, go_on,
+};
 use gyradius_dispersion::TenParameters;
 use gyradius_estimation::{Assembly, AssemblyPart, FirstOrder, TEN_UNITS};
 use gyradius_inertia::MassProperties;
 use nalgebra::{Cholesky, SMatrix, SVector};
 use rand_distr::{Distribution, StandardNormal};
-use std::ops::Range;
+use rayon::prelude::*;
+use std::{ops::Range, sync::atomic::AtomicBool};
 
 /// Under which streams are keyed, beside seed and name of the part.
 const DRAWN: &str = "rollup";
@@ -15,20 +18,34 @@ const NAIVE: &str = "rollup naive";
 /// The draws as a simulation: one row each.
 #[derive(Debug)]
 pub(super) struct Draws<'a> {
-    parts: Vec<(&'a AssemblyPart, Streams)>,
+    /// A body of each part, in the order of their names: those that vary are drawn over it.
+    bodies: Vec<MassProperties>,
+    varying: Vec<(usize, &'a AssemblyPart, Streams)>,
 }
 
 impl<'a> Draws<'a> {
     pub(super) fn new(assembly: &'a Assembly, seed: u64) -> Self {
-        let parts = assembly.parts();
-        Self { parts: parts.map(|(name, part)| (part, Streams::new(seed, DRAWN, name))).collect() }
+        let stream = |(name, part)| (part, Streams::new(seed, DRAWN, name));
+        let parts: Vec<(&AssemblyPart, Streams)> = assembly.parts().map(stream).collect();
+        let bodies = parts.iter().map(|(part, streams)| part.sample(&mut streams.run(0))).collect();
+        let numbered = parts.into_iter().enumerate();
+        let varying = numbered
+            .filter(|(_, (part, _))| part.varies())
+            .map(|(index, (part, streams))| (index, part, streams))
+            .collect();
+        Self { bodies, varying }
     }
 
     /// The parts of a draw, in the order of their names.
     fn parts(&self, run: u64, into: &mut Vec<MassProperties>) {
-        into.clear();
-        let each = self.parts.iter().map(|(_, streams)| (streams, run));
-        Streams::each(each, 10, |rng| into.push(self.parts[into.len()].0.sample(rng)));
+        into.clone_from(&self.bodies);
+        let mut next = self.varying.iter();
+        let each = self.varying.iter().map(|(_, _, streams)| (streams, run));
+        Streams::each(each, 10, |rng| {
+            if let Some((index, part, _)) = next.next() {
+                into[*index] = part.sample(rng);
+            }
+        });
     }
 
     #[cfg(test)]
@@ -48,7 +65,7 @@ impl Simulation for Draws<'_> {
     }
 
     fn worker(&self) -> Vec<MassProperties> {
-        Vec::with_capacity(self.parts.len())
+        Vec::with_capacity(self.bodies.len())
     }
 
     fn run(
@@ -87,25 +104,44 @@ pub struct NaiveShares {
     pub parts: Vec<(String, u64)>,
 }
 
-/// Counts impossible naive draws, from streams of their own.
-pub(super) fn naive(assembly: &Assembly, seed: u64, draws: u64) -> NaiveShares {
-    let mut any = vec![false; usize::try_from(draws).unwrap_or_default()];
-    let mut parts = Vec::new();
-    for (name, part) in assembly.parts() {
-        let streams = Streams::new(seed, NAIVE, name);
-        let mut count = 0;
-        for (run, any) in (0..).zip(&mut any) {
-            let impossible = !part.naive_draw_is_possible(&mut streams.run(run));
-            count += u64::from(impossible);
-            *any |= impossible;
-        }
-        if count > 0 {
-            parts.push((name.to_owned(), count));
-        }
-    }
+/// Counts impossible naive draws, from streams of their own, part by part.
+///
+/// # Errors
+/// It was told to stop.
+pub(super) fn naive(
+    assembly: &Assembly,
+    seed: u64,
+    draws: u64,
+    stop: Option<&AtomicBool>,
+) -> Result<NaiveShares, CampaignError> {
+    let parts: Vec<(&str, &AssemblyPart)> = assembly.parts().collect();
+    let none = || (vec![false; usize::try_from(draws).unwrap_or_default()], Vec::new());
+    let (any, mut parts) = parts
+        .into_par_iter()
+        .filter(|(_, part)| part.varies())
+        .try_fold(none, |(mut any, mut counts), (name, part)| {
+            go_on(stop)?;
+            let streams = Streams::new(seed, NAIVE, name);
+            let mut count = 0;
+            for (run, any) in (0..).zip(&mut any) {
+                let impossible = !part.naive_draw_is_possible(&mut streams.run(run));
+                count += u64::from(impossible);
+                *any |= impossible;
+            }
+            if count > 0 {
+                counts.push((name.to_owned(), count));
+            }
+            Ok::<_, CampaignError>((any, counts))
+        })
+        .try_reduce(none, |(mut any, mut counts), (others, more)| {
+            any.iter_mut().zip(others).for_each(|(any, other)| *any |= other);
+            counts.extend(more);
+            Ok((any, counts))
+        })?;
     parts.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
     let any_part = any.iter().filter(|any| **any).count() as u64;
-    NaiveShares { draws, whole: naive_whole(assembly.first_order(), seed, draws), any_part, parts }
+    let whole = naive_whole(assembly.first_order(), seed, draws);
+    Ok(NaiveShares { draws, whole, any_part, parts })
 }
 
 /// Impossible draws of ten Gaussian numbers.

@@ -169,7 +169,8 @@ impl Rollup {
                 sums.add(table);
                 take(table)
             })?;
-            Ok::<_, RollupError>(naive(&self.assembly, options.seed, options.draws.min(NAIVE)))
+            let (most, stop) = (options.draws.min(NAIVE), options.stop.as_deref());
+            Ok::<_, RollupError>(naive(&self.assembly, options.seed, most, stop)?)
         })?;
         Ok(RollupDraws { moments: sums.moments(), naive })
     }

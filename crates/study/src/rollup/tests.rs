@@ -1,7 +1,9 @@
 //! Lists of parts, from their text to draws.
 
-use gyradius_campaign::TableFormat;
+use gyradius_campaign::{Streams, TableFormat};
 use gyradius_formats::PartsTable;
+use gyradius_inertia::MassProperties;
+use rand_distr::Distribution;
 
 use super::*;
 
@@ -52,21 +54,36 @@ fn drawing_agrees_with_first_order_where_deviations_are_small() {
     assert!(drawn.naive.parts[0].0 == "panel" && drawn.naive.any_part > drawn.naive.draws / 4);
 }
 
+/// Whether all draws of one are among those of the other.
+fn before_and(before: &[(String, MassProperties)], after: &[(String, MassProperties)]) -> bool {
+    before.iter().all(|part| after.contains(part))
+}
+
 /// A part's stream has its name alone: nothing that is added or moved changes it.
 #[test]
 fn other_parts_and_other_rows_change_no_draw() {
     let (first, seed) = (rollup(LIST), 7);
     let more = LIST.replace("panel,", "antenna,craft,3,0,0,2,point,,,9,9,\npanel,");
     let more = rollup(&more);
-    let drawn = |rollup: &Rollup, run: u64| -> Vec<(String, gyradius_inertia::MassProperties)> {
+    let drawn = |rollup: &Rollup, run: u64| -> Vec<(String, MassProperties)> {
         let names: Vec<String> = rollup.assembly().parts().map(|(n, _)| n.to_owned()).collect();
         names.into_iter().zip(Draws::new(rollup.assembly(), seed).of(run)).collect()
     };
     for run in [0, 1, 99] {
         let (before, after) = (drawn(&first, run), drawn(&more, run));
         assert_eq!((before.len(), after.len()), (4, 5));
-        assert!(before.iter().all(|part| after.contains(part)));
+        assert!(before_and(&before, &after));
         assert_ne!(before[1].1.mass_kg(), before[2].1.mass_kg(), "equal parts draw apart");
+    }
+    // What a part without deviations is, is drawn once; others draw on as before.
+    let still = rollup(&LIST.replace("panel,", "rock,craft,7,0,1,0,solid_box,1 2 3,,,,\npanel,"));
+    let rock = |run| drawn(&still, run).into_iter().find(|(name, _)| name == "rock").unwrap();
+    assert!(before_and(&drawn(&first, 99), &drawn(&still, 99)) && rock(0) == rock(99));
+    let stated = still.assembly().parts().find(|(name, _)| *name == "rock").unwrap();
+    assert!(!stated.1.varies());
+    for run in [0, 1, 99] {
+        let own = stated.1.sample(&mut Streams::new(seed, "rollup", "rock").run(run));
+        assert_eq!(own, rock(0).1);
     }
     let mut lines: Vec<&str> = LIST.lines().collect();
     lines[1..].reverse();
