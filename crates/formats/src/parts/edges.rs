@@ -2,11 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use super::columns::PartColumns;
 use super::error::{PartsError, PartsProblem};
-use super::heading::Heading;
+use super::header::{cell, line_of, next, written};
 use super::row::Cells;
-use super::unread_kinds::Unread;
-use super::{cell, line_of, next, written};
 use crate::{
     FileBodyError, FileProblem, body::shortened, error::Refusal, rows::Rows,
     table_terms::TableTerms, text::Text,
@@ -46,16 +45,14 @@ impl Edges {
             places.iter().all(|(_, place)| *place != at).then(|| shortened(heading))
         };
         let passed_over = headings.iter().enumerate().filter_map(is_other).collect();
-        // Masses and the like are not read from here, whatever they say.
-        let column = |heading: &String| Unread::of(heading).map_or(Heading::Other, Heading::Unread);
-        let columns: Vec<Heading> = headings.iter().map(column).collect();
+        let columns = PartColumns::unread(headings, passed_over);
         let terms = TableTerms::default();
         let mut edges = Vec::new();
         let mut lines: BTreeMap<(String, String), usize> = BTreeMap::new();
         while let Some(fields) = next(&text, &mut rows)? {
             let line = line_of(&text, &fields);
             let refused = |problem| PartsError::new(line, None, problem);
-            let (found, allowed) = (fields.len(), headings.len());
+            let (found, allowed) = (fields.len(), columns.headings.len());
             if found != allowed {
                 let problem = FileBodyError::Count { field: "the row", found, allowed }.into();
                 return Err(refused(problem));
@@ -70,11 +67,9 @@ impl Edges {
             let cells: Vec<String> = fields.iter().map(|field| written(&text, field)).collect();
             let row = Cells {
                 columns: &columns,
-                headings: &headings,
                 cells: &cells,
                 stated: None,
                 products: None,
-                labels: &[],
                 terms: &terms,
             };
             if let Some(problem) = row.unread().or_else(|| row.not_known(false, false)) {
@@ -85,6 +80,6 @@ impl Edges {
             }
             edges.push((line, child, parent));
         }
-        Ok(Self { edges, passed_over })
+        Ok(Self { edges, passed_over: columns.passed_over })
     }
 }

@@ -1,7 +1,9 @@
 //! Lists of parts: mass, mass centre, inertia and their standard deviations, one part a row, and what belongs to what.
 
+mod columns;
 mod edges;
 mod error;
+mod header;
 pub(crate) mod heading;
 mod last_place;
 mod levels;
@@ -20,18 +22,13 @@ pub(crate) use unread_kinds::Unread;
 use std::collections::BTreeMap;
 
 use crate::{
-    FileProblem, MAX_BODIES, Products,
-    body::shortened,
-    error::Refusal,
-    products_comment::stated_products,
-    rows::{Field, NOT_KNOWN, Rows, headers, without_marks},
-    table_terms::{InertiaPoint, TableTerms},
-    text::Text,
-    title_point, title_units,
-    units::{Unit, squeezed},
+    FileProblem, MAX_BODIES, Products, error::Refusal, products_comment::stated_products,
+    table_terms::InertiaPoint, text::Text, title_point, title_units,
 };
+use columns::PartColumns;
 use edges::Edges;
-use heading::{Column, Heading};
+use header::{PartsHeader, line_of, next, written};
+use heading::Column;
 use levels::Levels;
 use row::Cells;
 use shares::Shares;
@@ -140,125 +137,35 @@ impl PartsTable {
 
     fn rows_of(bytes: &[u8], products: Option<Products>) -> Result<Raw, PartsError> {
         let text = Text::new(bytes, true)?;
-        let Some(Header { start, headings, units, mut rows }) = header(&text)? else {
+        let Some(header) = PartsHeader::of(&text)? else {
             return Err(Refusal::from(FileProblem::Empty).into());
         };
+        let PartsHeader { start, headings, units, mut rows } = header;
         let line = text.line(start);
-        let columns = headings.iter().map(|heading| Heading::of(heading));
-        let mut columns: Vec<Heading> = columns.collect();
-        if !columns.contains(&Heading::Column(Column::Shape)) {
-            columns = columns.into_iter().map(Heading::without_shapes).collect();
-        }
-        columns = Heading::with_one_half(columns);
-        // Beside names, numbers are no names.
-        let is_id = |heading: &String| squeezed(heading) == "id";
-        let names =
-            columns.iter().filter(|column| **column == Heading::Column(Column::Name)).count();
-        if names == 2
-            && let Some(id) = headings.iter().position(is_id)
-        {
-            columns[id] = Heading::Other;
-        }
-        // Words that may say something else are names where nothing else is.
-        let other_name = || headings.iter().position(|heading| heading::may_be_name(heading));
-        if names == 0
-            && let Some(at) = other_name()
-        {
-            columns[at] = Heading::Column(Column::Name);
-        }
-        let mut passed_over = Vec::new();
-        for (at, (column, heading)) in columns.iter().zip(&headings).enumerate() {
-            let refuse = |problem: PartsProblem| Err(PartsError::new(line, None, problem));
-            if let Some((field, bad)) = column.bad_unit(&columns) {
-                return refuse(Box::new(bad.clone().of(heading, field)).into());
-            }
-            if column.is_lost_product(&columns) {
-                let heading = shortened(heading);
-                return refuse(PartsProblem::File(FileProblem::Product { heading }));
-            }
-            if let Some(other) = column.unit_it_lacks(&columns) {
-                let (heading, other) = (shortened(heading), shortened(&headings[other]));
-                return refuse(PartsProblem::File(FileProblem::NoUnit { heading, other }));
-            }
-            match column {
-                Heading::Signed => {
-                    let heading = shortened(heading);
-                    return refuse(PartsProblem::File(FileProblem::Sign { heading }));
-                }
-                Heading::NoDeviation => {
-                    return refuse(PartsProblem::Deviation { heading: shortened(heading) });
-                }
-                Heading::SizeDeviation => {
-                    return refuse(PartsProblem::SizeDeviation { heading: shortened(heading) });
-                }
-                Heading::Unit(..)
-                | Heading::SizeUnit(..)
-                | Heading::Product
-                | Heading::Unread(_)
-                | Heading::Other => passed_over.push(shortened(heading)),
-                Heading::Column(_) | Heading::Size(..) => {
-                    if let Some(first) = columns[..at].iter().position(|c| c.says_the_same(column))
-                    {
-                        let (first, second) = (shortened(&headings[first]), shortened(heading));
-                        return refuse(PartsProblem::Columns { first, second });
-                    }
-                }
-            }
-        }
-        let lacks = |column: &Heading| matches!(column.dimension(), Some((_, None)));
-        title_units::refused(&text, start, columns.iter().any(lacks))?;
+        let in_header = |problem| PartsError::new(line, None, problem);
+        let columns = PartColumns::of(headings).map_err(in_header)?;
+        title_units::refused(&text, start, columns.some_lack_units())?;
         title_point::refused(&text, start, InertiaPoint::MassCentre)?;
-        let has = |wanted: Column| columns.contains(&Heading::Column(wanted));
-        let has_mass = columns.iter().any(|c| matches!(c, Heading::Column(Column::Value(0, _))));
-        let names = "name, id, part, body, link, component, item, element or description";
-        for (there, column) in [(has(Column::Name), names), (has_mass, "mass or m")] {
-            if !there {
-                let error = PartsError::new(line, None, PartsProblem::NoColumn { column });
-                return Err(error.beside(&passed_over));
-            }
-        }
-        let has_parents = has(Column::Parent);
+        columns.check_what_must_be().map_err(|p| in_header(p).beside(&columns.passed_over))?;
         let stated = stated_products(&text, start)?;
-        let measured = columns.iter().filter_map(Heading::dimension);
-        let measured = measured.map(|(dimension, unit)| (dimension, unit.unwrap_or(1.0)));
-        let terms = &TableTerms::new(measured, InertiaPoint::MassCentre);
+        let terms = columns.terms();
         if let Some((line, cells)) = &units {
-            let problem = |((column, heading), cell): ((&Heading, &String), &String)| match column {
-                Heading::Unread(what) => what.problem_in_units(heading, cell, terms),
-                _ => None,
-            };
-            if let Some(error) = columns.iter().zip(&headings).zip(cells).find_map(problem) {
-                return Err(PartsError::new(*line, None, error.into()));
-            }
+            let checked = columns.check_units(cells, &terms);
+            checked.map_err(|problem| PartsError::new(*line, None, problem))?;
         }
-        // What else may say that a row is a total.
-        let label = |at: &usize| {
-            let is_first =
-                *at == 0 || is_id(&headings[*at]) || heading::may_be_name(&headings[*at]);
-            is_first && columns[*at] == Heading::Other
-        };
-        let labels: Vec<usize> = (0..columns.len()).filter(label).collect();
-        let mut shares = Shares::of(&columns, &headings);
-        let mut levels = Levels::of(&headings).filter(|_| !has_parents);
+        let mut shares = Shares::of(&columns);
+        let has_parents = columns.has(Column::Parent);
+        let mut levels = Levels::of(&columns.headings).filter(|_| !has_parents);
         let mut found = Vec::new();
         while let Some(fields) = next(&text, &mut rows)? {
             let line = line_of(&text, &fields);
             if found.len() == MAX_BODIES {
-                return Err(
-                    Refusal { line: Some(line), problem: FileProblem::TooManyBodies }.into()
-                );
+                let problem = FileProblem::TooManyBodies;
+                return Err(Refusal { line: Some(line), problem }.into());
             }
             let cells: Vec<String> = fields.iter().map(|field| written(&text, field)).collect();
-            let row = Cells {
-                columns: &columns,
-                headings: &headings,
-                cells: &cells,
-                stated,
-                products,
-                labels: &labels,
-                terms,
-            };
-            let row = row.row(line).map_err(|error| error.beside(&passed_over))?;
+            let row = Cells { columns: &columns, cells: &cells, stated, products, terms: &terms };
+            let row = row.row(line).map_err(|error| error.beside(&columns.passed_over))?;
             if let Some(shares) = &mut shares {
                 shares.add(&row, &cells);
             }
@@ -268,7 +175,7 @@ impl PartsTable {
             found.push(row);
         }
         if found.is_empty() {
-            return Err(PartsError::new(line, None, PartsProblem::NoRows));
+            return Err(in_header(PartsProblem::NoRows));
         }
         if let Some((line, name, problem)) = levels.as_ref().and_then(Levels::problem) {
             return Err(PartsError::new(line, Some(name), problem));
@@ -278,9 +185,9 @@ impl PartsTable {
             return Err(PartsError::new(line, Some(label), PartsProblem::Summary));
         }
         if let Some(problem) = shares.and_then(Shares::problem) {
-            return Err(PartsError::new(line, None, problem));
+            return Err(in_header(problem));
         }
-        Ok(Raw { rows: found, passed_over, has_parents })
+        Ok(Raw { rows: found, passed_over: columns.passed_over, has_parents })
     }
 }
 
@@ -295,122 +202,6 @@ impl Raw {
     fn finish(self) -> PartsTable {
         PartsTable { rows: self.rows, passed_over: self.passed_over }
     }
-}
-
-/// The header of a list of parts with its offset, and what stands below it.
-struct Header<'a> {
-    start: usize,
-    /// With the units of the row below.
-    headings: Vec<String>,
-    /// Line and cells of that row, if there is one.
-    units: Option<(usize, Vec<String>)>,
-    /// The rows below both.
-    rows: Rows<'a>,
-}
-
-/// The header, which may stand below titles and have the units in a row below it. Where no line names parts and masses, the first one is the
-/// header.
-fn header(text: &Text) -> Result<Option<Header<'_>>, PartsError> {
-    let cells = |row: &[Field]| row.iter().map(|field| cell(text, field)).collect::<Vec<_>>();
-    let is_header = |cells: &[String]| {
-        let columns: Vec<Heading> = cells.iter().map(|cell| Heading::of(cell)).collect();
-        let has = |is: fn(&Heading) -> bool| columns.iter().any(is);
-        let has_name = has(|heading| *heading == Heading::Column(Column::Name))
-            || cells.iter().any(|cell| heading::may_be_name(cell))
-            || has(|heading| matches!(heading, Heading::Column(Column::Value(1..=3, _))));
-        has_name && has(|heading| matches!(heading, Heading::Column(Column::Value(0, _))))
-    };
-    let at = |(at, line): (usize, &str)| {
-        let mut rows = Rows::at(text.as_str(), at, line);
-        match rows.row() {
-            Ok(first) => is_header(&cells(&first)).then_some(Ok((first, rows))),
-            Err(error) if without_marks(line).any(|cells| is_header(&cells)) => {
-                Some(Err(error.of(text)))
-            }
-            // In a title, a quotation mark is no more than that.
-            Err(_) => None,
-        }
-    };
-    let (first, mut rows) = match headers(text.as_str()).find_map(at) {
-        Some(found) => found?,
-        None => {
-            let mut rows = Rows::new(text.as_str());
-            let Some(first) = next(text, &mut rows)? else { return Ok(None) };
-            (first, rows)
-        }
-    };
-    let mut headings = cells(&first);
-    let mut below = rows.clone();
-    let mut units = None;
-    if let Some(Ok(row)) = below.next() {
-        let (line, row) = (line_of(text, &row), cells(&row));
-        let with_units = with_units(&headings, &row);
-        if let Some(with_units) = with_units.map_err(|p| PartsError::new(line, None, p))? {
-            (headings, units, rows) = (with_units, Some((line, row)), below);
-        }
-    }
-    let start = first.first().map_or(0, |field| field.start);
-    Ok(Some(Header { start, headings, units, rows }))
-}
-
-/// The headings with the units of the row below them, if it is a row of units: it has one for a number, and no number.
-fn with_units(headings: &[String], below: &[String]) -> Result<Option<Vec<String>>, PartsProblem> {
-    let mut some = false;
-    let mut bad = None;
-    let mut together = headings.to_vec();
-    for (heading, unit) in together.iter_mut().zip(below) {
-        let column = Heading::of(heading);
-        let unit = unit.trim_start_matches(['[', '(']).trim_end_matches([']', ')']);
-        if !column.is_number() || unit.is_empty() || unit == "-" {
-            continue;
-        }
-        if unit.parse::<f64>().is_ok() {
-            return Ok(None);
-        }
-        let Some((dimension, stated)) = column.dimension() else {
-            let is_percent = column.is_percent();
-            if !is_percent || !["%", "percent"].contains(&unit) {
-                let allowed = if is_percent { "%, for one standard deviation" } else { "none" };
-                bad = bad.or(Some((heading.clone(), unit.to_owned(), allowed)));
-            }
-            continue;
-        };
-        let si = Unit::of(unit, dimension).ok().map(|unit| unit.si);
-        some |= si.is_some() || unit == "%";
-        // Both may say the same.
-        if si.is_none() || si != stated {
-            *heading = format!("{heading} [{unit}]");
-        }
-    }
-    if !some || headings.len() != below.len() {
-        return Ok(None);
-    }
-    match bad {
-        Some((heading, unit, allowed)) => {
-            let (heading, unit) = (shortened(&heading), shortened(&unit));
-            Err(PartsProblem::UnitBelow { heading, unit, allowed })
-        }
-        None => Ok(Some(together)),
-    }
-}
-
-fn next(text: &Text, rows: &mut Rows<'_>) -> Result<Option<Vec<Field>>, PartsError> {
-    rows.next().transpose().map_err(|error| error.of(text).into())
-}
-
-fn line_of(text: &Text, fields: &[Field]) -> usize {
-    text.line(fields.first().map_or(0, |field| field.start))
-}
-
-/// What a field holds, without blanks around it.
-fn written(text: &Text, field: &Field) -> String {
-    field.of(text.as_str()).trim().replace("\"\"", "\"")
-}
-
-/// The same of a heading, a unit or a name: nothing where R writes that nothing is there.
-fn cell(text: &Text, field: &Field) -> String {
-    let plain = written(text, field);
-    if plain == NOT_KNOWN { String::new() } else { plain }
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use gyradius_inertia::{InertiaMatrix, Shape};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use std::iter;
 
+use super::columns::PartColumns;
 use super::error::{PartsError, PartsFile, PartsProblem};
 use super::heading::{self, Column, GYRATION, Group, Heading, Scale, VALUES};
 use super::last_place::half_of_last_place;
@@ -142,22 +143,19 @@ impl PartNumbers {
 
 /// The cells of a row under their headings.
 pub(super) struct Cells<'a> {
-    pub(super) columns: &'a [Heading],
-    pub(super) headings: &'a [String],
+    pub(super) columns: &'a PartColumns,
     pub(super) cells: &'a [String],
     /// What a line above the header says of the products.
     pub(super) stated: Option<Products>,
     /// What they are where the table does not say it.
     pub(super) products: Option<Products>,
-    /// The columns that may say, beside the name, that a row is a total.
-    pub(super) labels: &'a [usize],
     /// What holds for all rows.
     pub(super) terms: &'a TableTerms,
 }
 
 impl Cells<'_> {
     pub(super) fn row(&self, line: usize) -> Result<PartRow, PartsError> {
-        let (found, allowed) = (self.cells.len(), self.columns.len());
+        let (found, allowed) = (self.cells.len(), self.columns.meanings.len());
         if found != allowed {
             let problem = FileBodyError::Count { field: "the row", found, allowed }.into();
             return Err(PartsError::new(line, None, problem));
@@ -173,7 +171,7 @@ impl Cells<'_> {
         }
         let numbers = self.numbers().map_err(refused)?;
         let place = (PartsFile::Parts, line);
-        let other_labels = self.labels.iter().filter_map(|at| self.cells.get(*at).cloned());
+        let other_labels = self.columns.labels.iter().filter_map(|at| self.cells.get(*at).cloned());
         let other_labels = other_labels.collect();
         Ok(PartRow { name, other_labels, parent, place, parent_place: place, numbers })
     }
@@ -183,13 +181,14 @@ impl Cells<'_> {
         &self,
         of: impl Fn(&Heading) -> Option<T>,
     ) -> impl Iterator<Item = (T, &str)> {
-        let pairs = self.columns.iter().zip(self.cells).filter(|(_, cell)| !is_blank(cell));
+        let pairs =
+            self.columns.meanings.iter().zip(self.cells).filter(|(_, cell)| !is_blank(cell));
         pairs.filter_map(move |(heading, cell)| Some((of(heading)?, cell.as_str())))
     }
 
     /// The first cell that would change the numbers of the row, and is not read.
     pub(super) fn unread(&self) -> Option<PartsProblem> {
-        let mut cells = self.columns.iter().zip(self.headings).zip(self.cells);
+        let mut cells = self.columns.with(self.cells);
         let problem = |((column, heading), cell): ((&Heading, &String), &String)| match column {
             Heading::Unread(what) => what.problem(heading, cell, self.terms),
             _ => None,
@@ -227,7 +226,7 @@ impl Cells<'_> {
             )
             | Heading::Other => false,
         };
-        let mut cells = self.columns.iter().zip(self.headings).zip(self.cells);
+        let mut cells = self.columns.with(self.cells);
         let found = cells.find(|((column, _), cell)| *cell == NOT_KNOWN && is_number(column));
         found.map(|((_, heading), _)| PartsProblem::NotKnown { heading: shortened(heading) })
     }
@@ -281,7 +280,7 @@ impl Cells<'_> {
             if values[i].is_none() {
                 let is_it =
                     |h: &Heading| matches!(h, Heading::Column(Column::Value(j, _)) if *j == i);
-                return Err(if self.columns.iter().any(is_it) {
+                return Err(if self.columns.meanings.iter().any(is_it) {
                     FileBodyError::Missing { field: VALUES[i] }.into()
                 } else {
                     PartsProblem::NoColumn { column: SPELLINGS[i] }

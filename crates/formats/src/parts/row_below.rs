@@ -14,7 +14,7 @@ const ROUNDED: f64 = 1e-9;
 impl Cells<'_> {
     /// That those of a row are those above the diagonal, as the columns say them.
     pub(super) fn agrees_below(&self, above: [f64; 3]) -> Result<(), PartsProblem> {
-        for ((column, heading), cell) in self.columns.iter().zip(self.headings).zip(self.cells) {
+        for ((column, heading), cell) in self.columns.with(self.cells) {
             let Heading::Column(Column::Below(product, unit)) = *column else { continue };
             if is_blank(cell) {
                 continue;

@@ -73,7 +73,7 @@ impl Cells<'_> {
         let says_nothing = |cell: &str| {
             is_blank(cell) || (numbers_of(cell).next().is_some() && numbers_of(cell).all(is_zero))
         };
-        let mut cells = self.columns.iter().zip(self.headings).zip(self.cells);
+        let mut cells = self.columns.with(self.cells);
         let found = cells
             .find(|((column, _), cell)| matches!(column, Heading::Size(..)) && !says_nothing(cell));
         found.map_or(Ok(()), |((_, heading), cell)| {

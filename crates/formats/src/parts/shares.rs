@@ -1,5 +1,6 @@
 //! Percentages in a column of masses that are shares of the total, and no standard deviations.
 
+use super::columns::PartColumns;
 use super::error::PartsProblem;
 use super::heading::{Column, Group, Heading, Scale};
 use super::last_place::half_of_last_place;
@@ -19,10 +20,10 @@ pub(super) struct Shares {
 
 impl Shares {
     /// The column of percentages, if there is one whose heading does not say that they are deviations.
-    pub(super) fn of(columns: &[Heading], headings: &[String]) -> Option<Self> {
+    pub(super) fn of(columns: &PartColumns) -> Option<Self> {
         let of_mass = Heading::Column(Column::Deviation(Group(0, 1), Scale::Percent));
-        let place = columns.iter().position(|column| *column == of_mass)?;
-        let heading = &headings[place];
+        let place = columns.meanings.iter().position(|column| *column == of_mass)?;
+        let heading = &columns.headings[place];
         let says_it = spread::has_sigma(heading);
         (!says_it).then(|| Self { place, heading: shortened(heading), rows: Vec::new() })
     }
