@@ -1,36 +1,27 @@
 //! Draws of the mass properties of a robot's links: as robots in files, and as a table.
 
+mod as_written;
+mod drawn_link;
 mod folder;
 mod inside;
 mod pick;
 mod summary;
 mod table;
 
-use gyradius_campaign::{CampaignError, FormatError, Streams, TableError};
-use gyradius_estimation::{StatedBody, StatementError, Statements};
+use gyradius_campaign::{CampaignError, FormatError, TableError};
+use gyradius_estimation::{StatementError, Statements};
 use gyradius_formats::{
-    Format, Gap, GapKind, LinkProblem, RobotError, RobotFile, RobotLink, TOLERANCE, WriteError,
-    judge,
+    Format, Gap, GapKind, LinkProblem, RobotError, RobotFile, RobotLink, WriteError,
 };
-use gyradius_inertia::{
-    Containment, Inertia, InertiaMatrix, MassProperties, Region, Repair, RepairMethod,
-};
-use nalgebra::Matrix3;
-use rand_distr::Distribution;
+use gyradius_inertia::MassProperties;
 use std::sync::{Arc, atomic::AtomicBool};
 
+use drawn_link::{DrawnLink, NotDrawn};
+
+pub use as_written::{as_written, inset};
 pub use folder::RobotFolder;
 pub use inside::Inside;
 pub use summary::LinkSummary;
-
-/// What keys the trials of a region.
-const TRIALS_MODEL: &str = "robot, trials";
-/// How many trials there are.
-const TRIALS: u64 = 400;
-/// How many of them must be possible in the region of a link, so that draws do not take too long.
-const LEAST_HELD: usize = 4;
-/// How far inside of what a body can have the inertia of a drawn link lies, as a part of its trace.
-const INSET: f64 = 1e-9;
 
 /// Which draws of which links.
 #[derive(Clone, Debug, Default)]
@@ -63,17 +54,6 @@ pub struct RobotDraw<'a> {
     links: Vec<DrawnLink>,
     left: Vec<(String, LeftBecause)>,
     options: RobotDrawOptions,
-}
-
-/// A link that is drawn.
-#[derive(Clone, Debug)]
-struct DrawnLink {
-    name: String,
-    /// Its place among the links of the file.
-    index: usize,
-    law: StatedBody,
-    streams: Streams,
-    region: Option<Region>,
 }
 
 /// Why a link stays as it is.
@@ -116,69 +96,25 @@ impl<'a> RobotDraw<'a> {
         let (mut links, mut left) = (Vec::new(), Vec::new());
         let (mut impossible, mut outside) = (Vec::new(), Vec::new());
         let (mut unreadable, mut beyond) = (Vec::new(), Vec::new());
-        let named = !options.links.is_empty();
+        let is_named = !options.links.is_empty();
         for (index, link) in robot.links().iter().enumerate() {
             let name = link.name().to_owned();
-            // It is not what a name means.
-            if let Some(problem) = beside(link) {
-                left.push((name, problem.into()));
-                continue;
+            let drawn = if let Some(problem) = beside(link) {
+                // It is not what a name means.
+                Err(NotDrawn::Left(problem.into()))
+            } else if picked.next().unwrap_or_default() {
+                DrawnLink::new(robot, (index, link), is_named, &options)
+            } else {
+                Err(NotDrawn::Left(LeftBecause::NotPicked))
+            };
+            match drawn {
+                Ok(drawn) => links.push(drawn),
+                Err(NotDrawn::Left(why)) => left.push((name, why)),
+                Err(NotDrawn::Unreadable(why)) => unreadable.push(format!("\"{name}\": {why}")),
+                Err(NotDrawn::Impossible) => impossible.push(name),
+                Err(NotDrawn::Beyond(error)) => beyond.push((name, error)),
+                Err(NotDrawn::Outside(why)) => outside.push(format!("\"{name}\": {why}")),
             }
-            let is_picked = picked.next().unwrap_or_default();
-            let numbers = match link.numbers() {
-                _ if !is_picked => {
-                    left.push((name, LeftBecause::NotPicked));
-                    continue;
-                }
-                // What was asked for by name, or is a slip, is not passed over.
-                Err(problem) if named || problem.is_a_slip() => {
-                    unreadable.push(format!("\"{name}\": {problem}"));
-                    continue;
-                }
-                Err(problem) => {
-                    left.push((name, problem.clone().into()));
-                    continue;
-                }
-                Ok(numbers) if numbers.mass_kg() == 0.0 => {
-                    left.push((name, LeftBecause::NoMass));
-                    continue;
-                }
-                Ok(numbers) => numbers,
-            };
-            // A mass that is none is no matter of the inertia, which alone is repaired.
-            if let Some(fault) = judge(&Matrix3::zeros(), Some(numbers.mass_kg()), 0.0).mass_fault()
-            {
-                unreadable.push(format!("\"{name}\": {fault}"));
-                continue;
-            }
-            let Some(inertia) = as_written(numbers.inertia()) else {
-                impossible.push(name);
-                continue;
-            };
-            let at = numbers.mass_centre_m();
-            let nominal = match MassProperties::new(numbers.mass_kg(), at, inertia) {
-                Ok(nominal) => nominal,
-                Err(error) => {
-                    unreadable.push(format!("\"{name}\": {error}"));
-                    continue;
-                }
-            };
-            let law = match StatedBody::new(&options.statements, &nominal) {
-                Ok(law) => law,
-                Err(error) => {
-                    beyond.push((name, error));
-                    continue;
-                }
-            };
-            let streams = Streams::of_draws(options.seed, &name);
-            let mut drawn = DrawnLink { name, index, law, streams, region: None };
-            if let Some(inside) = options.inside {
-                match drawn.confine(robot, inside) {
-                    Ok(region) => drawn.region = Some(region),
-                    Err(why) => outside.push(format!("\"{}\": {why}", drawn.name)),
-                }
-            }
-            links.push(drawn);
         }
         if let Some(inside) = options.inside.filter(|_| !outside.is_empty()) {
             return Err(RobotDrawError::Outside { inside, links: outside.join("; ") });
@@ -195,24 +131,7 @@ impl<'a> RobotDraw<'a> {
         let without = robot.links_without_inertia().iter();
         left.extend(without.map(|name| (name.clone(), LeftBecause::NoInertia)));
         if links.is_empty() {
-            // What can be mended is told before links without an inertia: macros that are to be expanded, numbers that cannot be read,
-            // inertias that stand where none is read, and files that are included, which can be drawn in the place of this one.
-            let gap = |kind| robot.gaps().iter().find(move |gap| gap.kind() == kind);
-            let (macros, misplaced) = (gap(GapKind::Macros), gap(GapKind::Misplaced));
-            let included = gap(GapKind::Included);
-            let mut picked = left.iter().filter(|(_, why)| *why != LeftBecause::NotPicked);
-            let is_problem = |(_, why): &&(_, _)| matches!(why, LeftBecause::Problem(_));
-            let told = |(name, why): &(String, LeftBecause)| format!(": \"{name}\": {why}");
-            let of_gap = |gap: &Gap| format!(": line {}: {gap}", gap.line());
-            let why = macros
-                .map(|gap| format!(": {gap}"))
-                .or_else(|| picked.clone().find(is_problem).map(told))
-                .or_else(|| misplaced.map(of_gap))
-                .or_else(|| {
-                    Some(of_gap(included?) + "; what is included can be drawn as a file of its own")
-                })
-                .or_else(|| picked.next().map(told))
-                .unwrap_or_default();
+            let why = why_nothing(robot, &left);
             return Err(RobotDrawError::Nothing { format: robot.format(), why });
         }
         Ok(Self { robot, links, left, options })
@@ -246,72 +165,26 @@ impl<'a> RobotDraw<'a> {
     }
 }
 
-impl DrawnLink {
-    /// The region of its geometry, if the law has enough draws that are possible there.
-    fn confine(&self, robot: &RobotFile, inside: Inside) -> Result<Region, String> {
-        let points = robot.points_m(self.index).map_err(|problem| problem.to_string())?;
-        let region = inside.about(&points).map_err(|error| format!("its geometry: {error}"))?;
-        let streams = Streams::new(0, TRIALS_MODEL, &self.name);
-        // As they are written: a plate is a little thicker than a region without thickness.
-        let trial =
-            |trial: &u64| inside::holds(&region, &inset(self.law.sample(&mut streams.run(*trial))));
-        // A trial in the hull of a round mesh takes milliseconds.
-        let held = (0..TRIALS).filter(trial).take(LEAST_HELD).count();
-        if held >= LEAST_HELD {
-            return Ok(region);
-        }
-        let nominal = match region.containment(&inset(*self.law.nominal())) {
-            Containment::Possible => "and its nominal numbers are",
-            Containment::Impossible => "and its nominal numbers are not",
-            Containment::Undecided => "and of its nominal numbers it is not known",
-        };
-        Err(format!("of {TRIALS} draws {held} are possible for matter there, {nominal}"))
-    }
-
-    fn body(&self, draw: u64) -> MassProperties {
-        let mut rng = self.streams.run(draw);
-        loop {
-            let drawn = inset(self.law.sample(&mut rng));
-            // Ends: of the trials enough were held. A joint law's own region would judge what was drawn, and this is what is
-            // written, a little inside of it.
-            if self.region.as_ref().is_none_or(|region| inside::holds(region, &drawn)) {
-                return drawn;
-            }
-        }
-    }
-}
-
-/// What was drawn of a body, moved a little inside of what a body can have, by 1e-9 of the trace of its inertia, as the robots that are
-/// written have it: programs that compare without tolerance, or read fewer digits, take flat plates and thin rods too then.
-#[must_use]
-pub fn inset(drawn: MassProperties) -> MassProperties {
-    let moved = off_boundary(drawn.inertia()).and_then(|inertia| {
-        MassProperties::new(drawn.mass_kg(), drawn.mass_centre_m(), inertia).ok()
-    });
-    moved.unwrap_or(drawn)
-}
-
-/// The inertia that a file means by these numbers: themselves, or the nearest that a body can have where rounding to six digits has
-/// made them impossible, as it does with flat plates and thin rods. None where more than rounding has.
-#[must_use]
-pub fn as_written(numbers: &InertiaMatrix) -> Option<Inertia> {
-    Inertia::try_from(*numbers).ok().or_else(|| {
-        let within = judge(numbers.matrix(), None, TOLERANCE).report().is_realizable();
-        let near = within.then(|| Repair::new(numbers, RepairMethod::Nearest).ok())?;
-        near.map(|near| *near.inertia())
-    })
-}
-
-/// The inertia moved inside by as much as it lies nearer to the boundary than [`INSET`]; nothing if it need not move.
-fn off_boundary(inertia: &Inertia) -> Option<Inertia> {
-    let trace = inertia.matrix().trace();
-    let least = inertia.principal_axes().second_moments().into_iter().fold(f64::INFINITY, f64::min);
-    let short = INSET * trace - least;
-    if !(short > 0.0) {
-        return None;
-    }
-    // Each second moment grows by half of what the moments do.
-    Inertia::new(inertia.matrix() + Matrix3::from_diagonal_element(2.0 * short)).ok()
+/// Why no link can be drawn, by the first reason that can be mended.
+fn why_nothing(robot: &RobotFile, left: &[(String, LeftBecause)]) -> String {
+    // What can be mended is told before links without an inertia: macros that are to be expanded, numbers that cannot be read,
+    // inertias that stand where none is read, and files that are included, which can be drawn in the place of this one.
+    let gap = |kind| robot.gaps().iter().find(move |gap| gap.kind() == kind);
+    let (macros, misplaced) = (gap(GapKind::Macros), gap(GapKind::Misplaced));
+    let included = gap(GapKind::Included);
+    let mut picked = left.iter().filter(|(_, why)| *why != LeftBecause::NotPicked);
+    let is_problem = |(_, why): &&(_, _)| matches!(why, LeftBecause::Problem(_));
+    let told = |(name, why): &(String, LeftBecause)| format!(": \"{name}\": {why}");
+    let of_gap = |gap: &Gap| format!(": line {}: {gap}", gap.line());
+    macros
+        .map(|gap| format!(": {gap}"))
+        .or_else(|| picked.clone().find(is_problem).map(told))
+        .or_else(|| misplaced.map(of_gap))
+        .or_else(|| {
+            Some(of_gap(included?) + "; what is included can be drawn as a file of its own")
+        })
+        .or_else(|| picked.next().map(told))
+        .unwrap_or_default()
 }
 
 /// The last draw has a number that a column can hold.

@@ -6,7 +6,7 @@ use gyradius_inertia::InertiaMatrix;
 use gyradius_statistics::Moments;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::{DrawnLink, RobotDraw};
+use super::{RobotDraw, drawn_link::DrawnLink};
 
 /// Draws that are looked at, at most.
 const LOOKED_AT: u64 = 2000;

@@ -5,7 +5,7 @@ use gyradius_dispersion::TenParameters;
 use rayon::prelude::*;
 use std::io::Write;
 
-use super::{DrawnLink, RobotDraw, RobotDrawError};
+use super::{RobotDraw, RobotDrawError, drawn_link::DrawnLink};
 
 /// Draws of a block.
 const BLOCK: u64 = 1 << 14;
