@@ -1,6 +1,7 @@
 //! A model of a scenario.
 
 use gyradius_dispersion::{DispersionModel, ModelKind, ModelParameterError, ModelParameters};
+use std::fmt::Display;
 
 use super::{
     ScenarioError, UncertainBody, check_name,
@@ -91,7 +92,13 @@ pub(crate) fn check_models<O: Owner>(
             return Err(ScenarioError::field(format!("{}.name", place(i)), problem));
         }
     }
-    files.iter().enumerate().map(|(i, file)| check_model(i, file, files, bodies)).collect()
+    let written = files.iter().enumerate().map(|(i, file)| WrittenModel {
+        place: place(i),
+        file,
+        all: files,
+        bodies,
+    });
+    written.map(|written| written.check()).collect()
 }
 
 /// The key of a model, counted from 0.
@@ -99,119 +106,149 @@ pub(crate) fn place(index: usize) -> String {
     format!("models[{}]", index + 1)
 }
 
-fn check_model<O: Owner>(
-    index: usize,
-    file: &ModelFile<O>,
-    all: &[ModelFile<O>],
-    bodies: &[(O, &UncertainBody)],
-) -> Result<ModelSpec, ScenarioError> {
-    let place = place(index);
-    let field_error = |field: &str, problem: String| {
-        Err(ScenarioError::field(format!("{place}.{field}"), problem))
-    };
-    let given = || {
-        let of = |(body, given): &(O, ModelParameters)| {
-            let keys = given.given().map(|key| (parameter_key(body, key), key));
-            keys.collect::<Vec<_>>()
+/// A model as it is written, and what it is about.
+struct WrittenModel<'a, O> {
+    place: String,
+    file: &'a ModelFile<O>,
+    all: &'a [ModelFile<O>],
+    bodies: &'a [(O, &'a UncertainBody)],
+}
+
+impl<O: Owner> WrittenModel<'_, O> {
+    fn check(&self) -> Result<ModelSpec, ScenarioError> {
+        self.check_names()?;
+        let law = match self.file.law {
+            ModelLaw::Outside => self.outside()?,
+            ModelLaw::Kind(kind) => {
+                if self.file.outside.is_some() {
+                    let problem = format!("law \"{kind}\" does not take it");
+                    return Err(self.error("outside", problem));
+                }
+                match kind {
+                    ModelKind::Principal => self.principal()?,
+                    ModelKind::Entries { .. }
+                    | ModelKind::LogCholesky
+                    | ModelKind::Wishart
+                    | ModelKind::Basilisk => self.entries(kind)?,
+                }
+            }
         };
-        file.parameters.iter().flat_map(of)
-    };
-    let of_nobody = file.parameters.iter().find(|(body, _)| bodies.iter().all(|(b, _)| b != body));
-    if let Some((body, parameters)) = of_nobody {
-        let names = bodies.iter().map(|(body, _)| body.name()).collect::<Vec<_>>().join(", ");
-        let key = parameters.given().next().unwrap_or_default();
-        let there = if names.is_empty() { "none".to_owned() } else { names };
-        let problem = format!("there is no body {:?}: the bodies are {there}", body.name());
-        return field_error(&parameter_key(body, key), problem);
+        Ok(ModelSpec { name: self.file.name.clone(), law })
     }
 
-    let ModelLaw::Kind(kind) = file.law else {
-        let mut others = given().map(|(field, _)| field);
-        let axes = file.axes.map(|_| "axes".to_owned());
-        let matched = file.matched_to.as_ref().map(|_| "matched_to".to_owned());
-        return match others.next().or(axes).or(matched) {
-            Some(field) => {
-                let problem = "law \"outside\" does not take it: a program gives the law by Scenario::with_model";
-                field_error(&field, problem.to_owned())
-            }
-            None => {
-                Ok(ModelSpec { name: file.name.clone(), law: Law::Outside(file.outside.clone()) })
-            }
-        };
-    };
-    if file.outside.is_some() {
-        return field_error("outside", format!("law \"{kind}\" does not take it"));
+    fn error(&self, field: &str, problem: impl Display) -> ScenarioError {
+        ScenarioError::field(format!("{}.{field}", self.place), problem)
     }
-    if kind == ModelKind::Principal {
+
+    /// The parameters that are given: how each is written, and its key.
+    fn given(&self) -> impl Iterator<Item = (String, &'static str)> {
+        self.file
+            .parameters
+            .iter()
+            .flat_map(|(body, given)| given.given().map(move |key| (parameter_key(body, key), key)))
+    }
+
+    /// Parameters are those of bodies that are there.
+    fn check_names(&self) -> Result<(), ScenarioError> {
+        let is_there = |body: &O| self.bodies.iter().any(|(other, _)| other == body);
+        let Some((body, given)) = self.file.parameters.iter().find(|(body, _)| !is_there(body))
+        else {
+            return Ok(());
+        };
+        let names: Vec<&str> = self.bodies.iter().map(|(body, _)| body.name()).collect();
+        let there = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+        let key = given.given().next().unwrap_or_default();
+        let problem = format!("there is no body {:?}: the bodies are {there}", body.name());
+        Err(self.error(&parameter_key(body, key), problem))
+    }
+
+    /// A law that a program gives.
+    fn outside(&self) -> Result<Law, ScenarioError> {
+        let parameter = self.given().map(|(field, _)| field).next();
+        let axes = self.file.axes.map(|_| "axes".to_owned());
+        let matched = self.file.matched_to.as_ref().map(|_| "matched_to".to_owned());
+        match parameter.or(axes).or(matched) {
+            Some(field) => Err(self.error(
+                &field,
+                "law \"outside\" does not take it: a program gives the law by Scenario::with_model",
+            )),
+            None => Ok(Law::Outside(self.file.outside.clone())),
+        }
+    }
+
+    /// The law of roots and principal axes.
+    fn principal(&self) -> Result<Law, ScenarioError> {
         // Without bodies they say nothing.
-        let none = bodies.is_empty().then_some(Axes::WholeSphere);
-        let Some(axes) = file.axes.or(none) else {
-            return Err(ScenarioError::field(
-                format!("{place}.axes"),
-                "missing: law \"principal\" needs axes: \"whole-sphere\", \"mean-half\" or \"jacobian-twice\"",
-            ));
+        let none = self.bodies.is_empty().then_some(Axes::WholeSphere);
+        let Some(axes) = self.file.axes.or(none) else {
+            let problem = "missing: law \"principal\" needs axes: \"whole-sphere\", \"mean-half\" or \"jacobian-twice\"";
+            return Err(self.error("axes", problem));
         };
         let only = "law \"principal\" takes axes and nothing else: its variances are those of \
                     the dispersion of each body";
-        if let Some((field, _)) = given().next() {
-            return field_error(&field, only.to_owned());
+        if let Some((field, _)) = self.given().next() {
+            return Err(self.error(&field, only));
         }
-        if file.matched_to.is_some() {
-            return field_error("matched_to", only.to_owned());
+        if self.file.matched_to.is_some() {
+            return Err(self.error("matched_to", only));
         }
-        if axes != Axes::WholeSphere && bodies.iter().any(|(_, b)| b.gaussian_axes().is_none()) {
+        let has_no_half = |(_, body): &(O, &UncertainBody)| body.gaussian_axes().is_none();
+        if axes != Axes::WholeSphere && self.bodies.iter().any(has_no_half) {
             let problem = "only \"whole-sphere\" goes with bodies whose dispersion.axes are \"uniform\" \
                            or \"fixed\", or are not those of one Gaussian by their law: they have no far half";
-            return field_error("axes", problem.to_owned());
+            return Err(self.error("axes", problem));
         }
-        return Ok(ModelSpec { name: file.name.clone(), law: Law::Principal(axes) });
+        Ok(Law::Principal(axes))
     }
 
-    if file.axes.is_some() {
-        return field_error("axes", format!("law \"{kind}\" does not take it"));
-    }
-    let (needs, defaults) = (kind.needs(), kind.defaults());
-    let takes = |key: &str| needs.contains(&key) || defaults.given().any(|other| other == key);
-    let of_all = |key: &&str| {
-        let keys = bodies.iter().map(|(body, _)| parameter_key(body, key));
-        keys.collect::<Vec<_>>().join(" and ")
-    };
-    let choice = format!(
-        "law \"{kind}\" needs either {}, or matched_to, and nothing else",
-        needs.iter().map(of_all).collect::<Vec<_>>().join(", ")
-    );
-    if let Some((field, _)) = given().find(|(_, key)| !takes(key)) {
-        return field_error(&field, format!("{choice}; it does not take this"));
-    }
-    let law = if let Some(other) = &file.matched_to {
-        if let Some((field, _)) = given().next() {
-            return field_error(&field, choice);
+    /// A law of the entries, by its own parameters or as another model is.
+    fn entries(&self, kind: ModelKind) -> Result<Law, ScenarioError> {
+        if self.file.axes.is_some() {
+            return Err(self.error("axes", format!("law \"{kind}\" does not take it")));
         }
-        let known = [ModelLaw::Kind(ModelKind::Principal), ModelLaw::Outside];
-        if !all.iter().any(|m| m.name == *other && known.contains(&m.law)) {
-            let problem = format!(
-                "{other:?}: it must name a model with law \"principal\", whose mean and deviations \
-                 can be computed"
-            );
-            return field_error("matched_to", problem);
+        let (needs, defaults) = (kind.needs(), kind.defaults());
+        let takes = |key: &str| needs.contains(&key) || defaults.given().any(|other| other == key);
+        let of_all = |key: &&str| {
+            let keys: Vec<String> =
+                self.bodies.iter().map(|(body, _)| parameter_key(body, key)).collect();
+            keys.join(" and ")
+        };
+        let choice = format!(
+            "law \"{kind}\" needs either {}, or matched_to, and nothing else",
+            needs.iter().map(of_all).collect::<Vec<_>>().join(", ")
+        );
+        if let Some((field, _)) = self.given().find(|(_, key)| !takes(key)) {
+            return Err(self.error(&field, format!("{choice}; it does not take this")));
         }
-        Law::Matched { kind, to: other.clone() }
-    } else {
-        for (body, given) in &file.parameters {
+        if let Some(other) = &self.file.matched_to {
+            if let Some((field, _)) = self.given().next() {
+                return Err(self.error(&field, choice));
+            }
+            let known = [ModelLaw::Kind(ModelKind::Principal), ModelLaw::Outside];
+            if !self.all.iter().any(|m| m.name == *other && known.contains(&m.law)) {
+                let problem = format!(
+                    "{other:?}: it must name a model with law \"principal\", whose mean and deviations \
+                     can be computed"
+                );
+                return Err(self.error("matched_to", problem));
+            }
+            return Ok(Law::Matched { kind, to: other.clone() });
+        }
+        for (body, given) in &self.file.parameters {
             if let Some(need) = needs.iter().find(|need| !given.given().any(|key| key == **need)) {
-                return field_error(&parameter_key(body, need), format!("missing: {choice}"));
+                return Err(self.error(&parameter_key(body, need), format!("missing: {choice}")));
             }
         }
         // Checked by making the models.
-        for ((body, given), (_, uncertain)) in file.parameters.iter().zip(bodies) {
+        for ((body, given), (_, uncertain)) in self.file.parameters.iter().zip(self.bodies) {
             let wrong = |ModelParameterError { key, problem }| {
-                ScenarioError::field(format!("{place}.{}", parameter_key(body, key)), problem)
+                self.error(&parameter_key(body, key), problem)
             };
             DispersionModel::about(kind, uncertain.nominal(), given).map_err(wrong)?;
         }
-        Law::Given { kind, parameters: file.parameters.iter().map(|(_, given)| *given).collect() }
-    };
-    Ok(ModelSpec { name: file.name.clone(), law })
+        let parameters = self.file.parameters.iter().map(|(_, given)| *given).collect();
+        Ok(Law::Given { kind, parameters })
+    }
 }
 
 pub(crate) fn check_comparisons(
