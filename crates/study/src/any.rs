@@ -19,9 +19,9 @@ use crate::{
     rare, results,
     scenario::{scenario_file, scenario_text},
     shards,
-    study::{self},
     subject::{Subject, Summarized},
     unfinished::begun_study,
+    what_is_left,
 };
 
 /// A scenario of separations, or of a simulator of the user's own, which has a table `[simulation]`.
@@ -342,7 +342,7 @@ pub fn put_together(
     })?;
     let scenario = AnyScenario::of_study(&text, folder)?;
     of_either!(&scenario, scenario =>
-        study::put_together(&**scenario, folder, options, say).map(|study| StudyOutcome::of(&study)))
+        what_is_left::put_together(&**scenario, folder, options, say).map(|study| StudyOutcome::of(&study)))
 }
 
 /// Makes the figures and the report of the study in a folder again, there or in another folder; returns the folder.

@@ -12,9 +12,10 @@ use crate::{
     ended::Ended,
     read_only::complete_study,
     scenario::scenario_text,
-    study::{do_what_is_left, plan, same_as_before, to_be_done},
+    study::{plan, same_as_before, to_be_done},
     subject::Subject,
     unfinished::replacement,
+    what_is_left::do_what_is_left,
 };
 
 /// Does the runs of a scenario until they have shown enough, in blocks that are not put together. Returns the scenario with

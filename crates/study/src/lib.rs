@@ -78,6 +78,7 @@ mod unfinished;
 mod unit;
 mod unmatched;
 mod unusual;
+mod what_is_left;
 mod where_runs_fail;
 
 pub use any::{AnyScenario, StudyOutcome, is_begun, put_together, write_report};

@@ -228,8 +228,8 @@ impl<'a> Folder<'a> {
     }
 
     /// Puts the draft in place of the files of the one that was there, and of nothing else. If
-    /// that fails half-way, what was there is put back.
-    pub fn publish(mut self) -> Result<PathBuf, FolderError> {
+    /// that fails half-way, what was there is put back. Others are kept out until this is dropped.
+    pub fn publish(&mut self) -> Result<PathBuf, FolderError> {
         self.put().map_err(|problem| self.failed(problem))?;
         self.stays = true;
         Ok(self.place.clone())
