@@ -104,8 +104,18 @@ fn drivers_go_on_after_a_kill() {
     }
     child.kill().unwrap();
     child.wait().unwrap();
+    let left = content(&scratch.path("it/.gyradius/drivers"));
+    assert!(!left.is_empty());
     done("it", &["--drivers", "9000", "--threads", "1"]);
     assert_eq!(content(&scratch.path("it")), whole);
+    // As after a kill between the summary and the end.
+    fs::create_dir_all(&blocks).unwrap();
+    for (name, bytes) in left {
+        fs::write(scratch.path("it/.gyradius/drivers").join(name), bytes).unwrap();
+    }
+    done("it", &["--drivers", "9000", "--threads", "1"]);
+    assert_eq!(content(&scratch.path("it")), whole);
+    assert!(!scratch.path("it/.gyradius/drivers").exists());
     done("less", &["--drivers", "100"]);
     done("less", &["--drivers", "9000"]);
     assert_eq!(content(&scratch.path("less")), whole);

@@ -6,7 +6,7 @@ use gyradius_separation::MovingBody;
 use gyradius_statistics::Survey;
 use nalgebra::{Unit, Vector3};
 use serde::{Deserialize, Serialize};
-use std::mem::discriminant;
+use std::{borrow::Cow, mem::discriminant};
 
 use crate::{
     Fleet, folded::FoldedRoot, off_nominal::OffNominal, rounding::Rounding, scenario::Dispersed,
@@ -153,17 +153,19 @@ impl Alert {
         (angle_deg > OFF_AXIS_DEG).then_some(Self::OffAxis { angle_deg, spin_axis })
     }
 
-    /// That outcomes, by their labels and with their units, have heavy tails: they vary by more than this rounding.
+    /// That outcomes, by their labels and with columns and units, have heavy tails: they vary by more than this rounding.
     pub(crate) fn heavy_tails<'a>(
         model: &str,
-        outcomes: impl IntoIterator<Item = (String, &'a str, &'a SampleSummary)>,
+        outcomes: impl IntoIterator<Item = (String, (Cow<'a, str>, &'a str), &'a SampleSummary)>,
         rounding: Rounding,
     ) -> Option<Self> {
-        let heavy = |(label, unit, sample): (String, &str, &SampleSummary)| {
-            let kurtosis = sample.kurtosis.filter(|kurtosis| *kurtosis > HEAVY)?;
-            let varies = rounding.is_exceeded(sample.minimum?, sample.maximum?, unit);
-            varies.then_some((label, kurtosis))
-        };
+        let heavy =
+            |(label, (column, unit), sample): (String, (Cow<'_, str>, &str), &SampleSummary)| {
+                let kurtosis = sample.kurtosis.filter(|kurtosis| *kurtosis > HEAVY)?;
+                let varies =
+                    rounding.is_exceeded(sample.minimum?, sample.maximum?, (&column, unit));
+                varies.then_some((label, kurtosis))
+            };
         let outcomes: Vec<(String, f64)> = outcomes.into_iter().filter_map(heavy).collect();
         let model = model.to_owned();
         (!outcomes.is_empty()).then_some(Self::HeavyTails { model, outcomes })

@@ -312,7 +312,10 @@ impl Quantity {
     /// Whether its values differ by more than rounding.
     pub(crate) fn varies(self, survey: &Survey, rounding: Rounding) -> bool {
         let range = survey.minimum().zip(survey.maximum());
-        range.is_some_and(|((least, _), (most, _))| rounding.is_exceeded(least, most, self.unit()))
+        let (column, unit) = (self.column(), self.unit());
+        range.is_some_and(|((least, _), (most, _))| {
+            rounding.is_exceeded(least, most, (&column, unit))
+        })
     }
 
     /// What it means, in a sentence.

@@ -395,8 +395,9 @@ impl ModelSummary {
             Alert::unmoved(name, dispersed, survey, scenario.fleet())
         });
         let outcomes = || self.quantities.iter().filter(|q| q.quantity.is_told());
-        let heavy =
-            outcomes().map(|q| (q.quantity.label().into_owned(), q.quantity.unit(), &q.sample));
+        let heavy = outcomes().map(|q| {
+            (q.quantity.label().into_owned(), (q.quantity.column(), q.quantity.unit()), &q.sample)
+        });
         let near = Body::BOTH.map(Body::name).into_iter().zip(seen.near_boundary);
         let near = near.filter_map(|(body, [near, of])| Alert::near_boundary(name, body, near, of));
         let parted = seen.quantity(Quantity::DirectionError).map_or(0, Survey::n);

@@ -16,7 +16,7 @@ use crate::{
     Notice, Options, Study, StudyError,
     contents::{contents, identity},
     decisions,
-    drivers::Finding,
+    drivers::{self, Finding},
     ended::Ended,
     head::Missing,
     report,
@@ -146,19 +146,19 @@ impl<C: Subject> WhatIsLeft<'_, '_, C> {
         if complete && self.doing == Doing::Nothing && scenario.drivers().is_some() {
             say(Notice::DriversLeft);
         }
-        let mut beside = None;
         if does_runs {
             let (models, threads, identity) = (self.models, self.threads, self.identity);
             let finding = Finding { scenario, models, options, folder, identity, threads };
             let before = || whole_summary::<C>(self.place);
-            (summary.head_mut().drivers, beside) =
-                finding.find(before, &|runs| progress(of + runs))?;
+            summary.head_mut().drivers = finding.find(before, &|runs| progress(of + runs))?;
         }
         let (place, summary) = self.write(folder, &summary)?;
         if complete {
             blocks.settle()?;
         }
-        beside.map_or(Ok(()), |beside: Blocks| beside.settle())?;
+        if does_runs {
+            folder.clear_beside(drivers::BESIDE)?;
+        }
         let runs = if self.kept.is_all() || !complete {
             runs.into_iter().map(|runs| blocks.in_place(runs)).collect()
         } else {
@@ -218,7 +218,10 @@ impl<C: Subject> WhatIsLeft<'_, '_, C> {
         if self.options.force {
             say(Notice::Finished);
         }
-        if self.doing == Doing::Nothing && lacks_drivers(self.scenario, &summary) {
+        if !lacks_drivers(self.scenario, &summary) {
+            // A command that was killed in between left them.
+            folder.clear_beside(drivers::BESIDE)?;
+        } else if self.doing == Doing::Nothing {
             say(Notice::DriversLeft);
         }
         Ok(Some(Study::of(self.place.to_owned(), runs, summary)))

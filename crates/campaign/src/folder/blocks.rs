@@ -83,7 +83,7 @@ impl Folder<'_> {
     }
 
     /// The finished blocks of another campaign of the same folder, which has a name and is put nowhere: only what comes of it
-    /// is. [`settle`](Blocks::settle) removes them.
+    /// is. [`clear_beside`](Self::clear_beside) removes them.
     ///
     /// # Errors
     /// As [`blocks`](Self::blocks).
@@ -105,6 +105,15 @@ impl Folder<'_> {
             threads,
         );
         opened.map_err(|problem| self.failed(problem))
+    }
+
+    /// Removes the blocks of a campaign that is put nowhere, if some are left.
+    ///
+    /// # Errors
+    /// One cannot be removed.
+    pub fn clear_beside(&self, name: &str) -> Result<(), FolderError> {
+        let cleared = Area::called(self.hidden.place(), name).clear();
+        cleared.map_err(|error| self.failed(error.into()))
     }
 
     /// That nothing is in the places of blocks of a model that are to be done, but what may be replaced.

@@ -5,8 +5,7 @@ mod section;
 mod tests;
 
 use gyradius_campaign::{
-    Blocks, Column, Doing, Folder, Identity, Output, Plan, Progress, Simulation, run_missing,
-    sha256,
+    Column, Doing, Folder, Identity, Output, Plan, Progress, Simulation, run_missing, sha256,
 };
 use gyradius_statistics::{Confidence, SobolIndices};
 use rayon::ThreadPool;
@@ -23,8 +22,8 @@ use crate::{
 use section::fails;
 pub(crate) use section::{figure_names, section, told};
 
-/// Where their runs are until they are counted.
-const BESIDE: &str = "drivers";
+/// Where their runs are until what they amount to is written.
+pub(crate) const BESIDE: &str = "drivers";
 
 /// The runs that the drivers of all models take.
 pub(crate) fn runs<C: Subject>(scenario: &C) -> Result<u64, StudyError> {
@@ -51,8 +50,8 @@ impl<C: Subject> Finding<'_, '_, C> {
         &self,
         before: impl FnOnce() -> Option<C::Summary>,
         progress: Progress<'_>,
-    ) -> Result<(Vec<Drivers>, Option<Blocks>), StudyError> {
-        let Some(base) = self.scenario.drivers() else { return Ok((Vec::new(), None)) };
+    ) -> Result<Vec<Drivers>, StudyError> {
+        let Some(base) = self.scenario.drivers() else { return Ok(Vec::new()) };
         let requirements = self.scenario.requirements();
         let outcomes = self.scenario.outcomes();
         let identity = sha256(serde_json::to_string(&(self.identity, requirements, &outcomes))?);
@@ -66,7 +65,7 @@ impl<C: Subject> Finding<'_, '_, C> {
             head.drivers.len() == names.len() && head.drivers.iter().all(same)
         };
         if let Some(there) = before().filter(|there| known(there.head())) {
-            return Ok((there.head().drivers.clone(), None));
+            return Ok(there.head().drivers.clone());
         }
         self.scenario.begin(self.models)?;
         let exchanging = |place| self.scenario.drawing(self.models, place, Drawing::Exchanging);
@@ -118,7 +117,7 @@ impl<C: Subject> Finding<'_, '_, C> {
             for ((output, unit), indices) in names.zip(indices) {
                 let moves = |indices: &SobolIndices| {
                     let unit = unit.as_deref().unwrap_or_default();
-                    let size = rounding.size(indices.mean(), unit);
+                    let size = rounding.size(indices.mean(), (&output, unit));
                     rounding.is_exceeded_by(indices.standard_deviation(), size)
                 };
                 match indices.filter(moves) {
@@ -138,6 +137,6 @@ impl<C: Subject> Finding<'_, '_, C> {
                 identity: identity.clone(),
             });
         }
-        Ok((all, Some(blocks)))
+        Ok(all)
     }
 }

@@ -90,7 +90,8 @@ impl SimulatorScenario {
         let outputs: Vec<(String, &SampleSummary)> = outputs
             .filter_map(|(column, _, samples)| Some((column.to_owned(), samples.get(place)?)))
             .collect();
-        let heavy = outputs.iter().map(|(column, sample)| (column.clone(), "", *sample));
+        let heavy =
+            outputs.iter().map(|(column, sample)| (column.clone(), (column.into(), ""), *sample));
         let told = outputs.iter().map(|(column, sample)| (column.clone(), sample.n));
         let (_, failures, runs) = overview.failed().nth(place).unwrap_or_default();
         let few = Alert::few_values(name, told, runs - failures);

@@ -192,12 +192,12 @@ pub(crate) fn found(runs: &Runs, asked: Asked<'_>) -> Result<Option<WhereRunsFai
 /// Whether an outcome differs between runs by more than rounding.
 fn varying(runs: &Runs, outcome: &Measured, numbers: &[f64], rounding: Rounding) -> bool {
     let of = |name: &String| runs.columns().iter().find(|column| column.name() == name);
-    let units = outcome.columns().iter().map(|name| of(name).and_then(Column::unit));
-    let units: Vec<&str> = units.map(Option::unwrap_or_default).collect();
+    let unit = |name: &String| of(name).and_then(Column::unit).unwrap_or_default();
     let finite = || numbers.iter().copied().filter(|x| x.is_finite());
     let range = finite().reduce(f64::min).zip(finite().reduce(f64::max));
     range.is_some_and(|(least, most)| {
-        units.iter().all(|unit| rounding.is_exceeded(least, most, unit))
+        let exceeds = |name: &String| rounding.is_exceeded(least, most, (name, unit(name)));
+        outcome.columns().iter().all(exceeds)
     })
 }
 
