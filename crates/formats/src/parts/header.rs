@@ -126,6 +126,14 @@ pub(super) fn written(text: &Text, field: &Field) -> String {
     field.of(text.as_str()).trim().replace("\"\"", "\"")
 }
 
+/// How many blanks stand before what a field holds, outside of its quotation marks and within them.
+pub(super) fn indentation(text: &Text, field: &Field) -> usize {
+    let before = text.as_str().get(..field.start).unwrap_or_default();
+    let outside = before.len() - before.trim_end_matches(' ').len();
+    let held = field.of(text.as_str());
+    outside + held.chars().take_while(|c| c.is_whitespace()).count()
+}
+
 /// The same of a heading, a unit or a name: nothing where R writes that nothing is there.
 pub(super) fn cell(text: &Text, field: &Field) -> String {
     let plain = written(text, field);

@@ -27,7 +27,7 @@ const NUMBERS: [&str; 6] = ["wbs", "item", "pos", "outline", "no", "nr"];
 const BESIDE_NUMBERS: [&str; 7] = ["number", "num", "code", "id", "element", "bom", "structure"];
 
 /// What is written as many times as a row is levels deep.
-const MARKS: [char; 12] = ['.', '>', '»', '→', '-', '–', '—', '+', '*', '•', '·', '|'];
+pub(super) const MARKS: [char; 12] = ['.', '>', '»', '→', '-', '–', '—', '+', '*', '•', '·', '|'];
 
 /// The columns that say what belongs to what, and what stands in them.
 #[derive(Debug)]

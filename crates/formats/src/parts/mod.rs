@@ -7,6 +7,7 @@ mod header;
 pub(crate) mod heading;
 mod last_place;
 mod levels;
+mod nesting;
 mod row;
 mod row_below;
 mod row_shape;
@@ -30,6 +31,7 @@ use edges::Edges;
 use header::{PartsHeader, line_of, next, written};
 use heading::Column;
 use levels::Levels;
+use nesting::Nesting;
 use row::Cells;
 use shares::Shares;
 
@@ -156,6 +158,7 @@ impl PartsTable {
         let mut shares = Shares::of(&columns);
         let has_parents = columns.has(Column::Parent);
         let mut levels = Levels::of(&columns.headings).filter(|_| !has_parents);
+        let mut nesting = Nesting::of(&columns).filter(|_| !has_parents);
         let mut found = Vec::new();
         while let Some(fields) = next(&text, &mut rows)? {
             let line = line_of(&text, &fields);
@@ -172,6 +175,9 @@ impl PartsTable {
             if let Some(levels) = &mut levels {
                 levels.add(&row, &cells);
             }
+            if let Some(nesting) = &mut nesting {
+                nesting.add(&text, &fields, &cells);
+            }
             found.push(row);
         }
         if found.is_empty() {
@@ -183,6 +189,9 @@ impl PartsTable {
         if let Some((row, label)) = totals::named(&found) {
             let (_, line) = row.place();
             return Err(PartsError::new(line, Some(label), PartsProblem::Summary));
+        }
+        if let Some((row, problem)) = nesting.and_then(|nesting| nesting.problem(&found)) {
+            return Err(PartsError::new(row.place().1, Some(row.name()), problem));
         }
         if let Some(problem) = shares.and_then(Shares::problem) {
             return Err(in_header(problem));

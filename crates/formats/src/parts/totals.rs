@@ -104,6 +104,27 @@ impl Sum {
     }
 }
 
+/// What each row of a list weighs, if it has numbers.
+pub(super) struct Totals {
+    weights: Vec<Option<Weight>>,
+    size: f64,
+}
+
+impl Totals {
+    pub(super) fn of(rows: &[PartRow]) -> Self {
+        let size = size(rows);
+        let weight = |row: &PartRow| Some(Weight::of(row, row.numbers()?, size));
+        Self { weights: rows.iter().map(weight).collect(), size }
+    }
+
+    /// Whether a row has mass and mass centre of some others together.
+    pub(super) fn is_of(&self, row: usize, parts: &[usize]) -> bool {
+        let weight = |at: &usize| self.weights.get(*at)?.as_ref();
+        let sum = Sum::of(parts.iter().filter_map(weight));
+        weight(&row).is_some_and(|own| sum.is_same(own, self.size))
+    }
+}
+
 /// How many rows a row must have the sum of to be taken for it, if it speaks of one.
 fn least(row: &PartRow) -> Option<usize> {
     row.labels().filter_map(least_summed).min()
