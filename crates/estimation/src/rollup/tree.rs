@@ -278,7 +278,10 @@ pub enum AssemblyError {
         child: String,
     },
     /// A row with neither numbers nor parts.
-    #[error("{name:?} has neither numbers nor parts: it must have one of them")]
+    #[error(
+        "{name:?} has neither numbers nor parts: it must have numbers, or be left out, or be the parent of other rows, which a column \"parent\" or \
+         a table of edges must say, whatever their order, numbers and levels"
+    )]
     Nothing {
         /// The row.
         name: String,

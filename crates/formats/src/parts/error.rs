@@ -185,8 +185,9 @@ pub enum PartsProblem {
     },
     /// A row with numbers below another one with numbers, to which it belongs.
     #[error(
-        "column {heading:?} says that the row belongs to {above:?}, and both have numbers, which rollup would count twice: an assembly must \
-         have none, or, if the column says something else, it must have another heading"
+        "column {heading:?} says that the row belongs to {above:?}, and both have numbers, which rollup would count twice: the row of an \
+         assembly must be left out, or have no numbers, and then a column \"parent\" must say which rows belong to it; if {heading:?} says \
+         something else, it must be written otherwise"
     )]
     Level {
         /// The heading.

@@ -150,3 +150,39 @@ fn one_draw_has_no_deviation() {
         assert!(moments.spread.is_none_or(|spread| spread.deviation.iter().all(|s| *s > 0.0)));
     }
 }
+
+/// What the refusal of an assembly with numbers advises can be done: each way gives the parts alone.
+#[test]
+fn the_advice_on_assemblies_with_numbers_can_be_followed() {
+    for (heading, cells) in
+        [("Level", ["1", "2", "2"]), ("WBS", ["1", "1.1", "1.2"]), ("Indent", ["", ">", ">"])]
+    {
+        let part = |at: usize, name: &str, parent: &str, mass: &str| {
+            let numbers = if mass.is_empty() { ",,,,,," } else { ",0,0,0,1,1,1" };
+            format!("{},{name}{parent},{mass}{numbers}\n", cells[at])
+        };
+        let head = |parent: &str| format!("{heading},name{parent},mass,Cx,Cy,Cz,Ixx,Iyy,Izz\n");
+        let list = |mass: &str, of: [&str; 3]| {
+            let rows =
+                [part(0, "bus", of[1], mass), part(1, "a", of[2], "6"), part(2, "b", of[2], "4")];
+            head(of[0]) + &rows.concat()
+        };
+        let said = |text: &str| {
+            let table =
+                PartsTable::read(text.as_bytes(), None).map_err(|error| error.to_string())?;
+            Rollup::new(&table)
+                .map(|found| found.assembly.first_order().nominal().mass_kg())
+                .map_err(|e| e.to_string())
+        };
+        let advice = said(&list("10", ["", "", ""])).unwrap_err();
+        assert!(
+            advice.contains("must be left out, or have no numbers, and then a column \"parent\""),
+            "{advice}"
+        );
+        let advice = said(&list("", ["", "", ""])).unwrap_err();
+        assert!(advice.contains("or be left out, or be the parent of other rows"), "{advice}");
+        assert_eq!(said(&list("", [",parent", ",", ",bus"])), Ok(10.0));
+        let left_out = head("") + &part(1, "a", "", "6") + &part(2, "b", "", "4");
+        assert_eq!(said(&left_out), Ok(10.0));
+    }
+}
