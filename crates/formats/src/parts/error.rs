@@ -176,7 +176,7 @@ pub enum PartsProblem {
     },
     /// A column of percentages that are no standard deviations.
     #[error(
-        "column {heading:?} has the share of each part in the mass of all, which is no standard deviation: the column must be left out, or, if it is \
+        "column {heading:?} has the share of each part in the mass of all or of its assembly, which is no standard deviation: the column must be left out, or, if it is \
          one, be called sigma_mass_percent"
     )]
     Shares {

@@ -1,5 +1,7 @@
 //! Percentages in a column of masses that are shares of the total, and no standard deviations.
 
+use std::collections::BTreeMap;
+
 use super::columns::PartColumns;
 use super::error::PartsProblem;
 use super::heading::{Column, Group, Heading, Scale};
@@ -10,12 +12,21 @@ use crate::{body::shortened, spread};
 /// Beyond this, no percentage of all parts alike is a standard deviation.
 const MOST_ALIKE: f64 = 20.0;
 
-/// The percentages of the masses, as they are written, and the masses.
+/// The percentages of the masses, and the masses.
 #[derive(Debug)]
 pub(super) struct Shares {
     place: usize,
     heading: String,
-    rows: Vec<(String, f64)>,
+    rows: Vec<Row>,
+}
+
+#[derive(Debug)]
+struct Row {
+    /// As it is written, and as a number, if one is there.
+    cell: String,
+    percent: Option<f64>,
+    mass: f64,
+    parent: Option<String>,
 }
 
 impl Shares {
@@ -31,24 +42,48 @@ impl Shares {
     pub(super) fn add(&mut self, row: &PartRow, cells: &[String]) {
         if let (Some(numbers), Some(cell)) = (row.numbers(), cells.get(self.place)) {
             let cell = cell.trim_end_matches('%').trim_end().to_owned();
-            self.rows.push((cell, numbers.mass_kg()));
+            let (percent, mass) = (cell.parse().ok(), numbers.mass_kg());
+            let parent = row.parent().map(str::to_owned);
+            self.rows.push(Row { cell, percent, mass, parent });
         }
     }
 
-    /// Why they are refused, if each is the share of its part in the mass of all of two or more, to its digits. Equal parts may have equal deviations.
+    /// Why they are refused, if each is the share of its part in the mass of all of two or more, or of all of its assembly. Equal parts may have equal
+    /// deviations.
     pub(super) fn problem(self) -> Option<PartsProblem> {
-        let total: f64 = self.rows.iter().map(|(_, mass)| mass).sum();
-        let is_share = |(cell, mass): &(String, f64)| {
-            let percent = cell.parse::<f64>().ok();
-            let off = half_of_last_place(cell) * (1.0 + 1e-9);
-            percent.is_some_and(|percent| (percent - 100.0 * mass / total).abs() <= off)
-        };
-        let first = self.rows.first()?.0.parse().unwrap_or(0.0);
-        let are_alike = self.rows.iter().all(|(cell, _)| cell.parse() == Ok(first));
-        let are_shares = self.rows.len() > 1 && self.rows.iter().all(is_share);
-        (are_shares && (!are_alike || first >= MOST_ALIKE))
+        let all: Vec<&Row> = self.rows.iter().collect();
+        let mut assemblies: BTreeMap<Option<&str>, Vec<&Row>> = BTreeMap::new();
+        all.iter().for_each(|row| assemblies.entry(row.parent.as_deref()).or_default().push(row));
+        let given: Vec<f64> = all.iter().filter_map(|row| row.percent).collect();
+        let first = *given.first()?;
+        let are_alike = given.iter().all(|percent| *percent == first);
+        // A few may be shares by chance.
+        let are_enough = given.len() > 1 && 2 * given.len() >= all.len();
+        let are_shares = are_shares(&all) || assemblies.values().all(|rows| are_shares(rows));
+        (are_enough && are_shares && (!are_alike || first >= MOST_ALIKE))
             .then_some(PartsProblem::Shares { heading: self.heading })
     }
+}
+
+/// Whether the percentages of some parts, which some may lack, are their shares in the mass of all of them: rounded each, or cut to their digits, or
+/// rounded so that they sum to 100.
+fn are_shares(rows: &[&Row]) -> bool {
+    let total: f64 = rows.iter().map(|row| row.mass).sum();
+    let share = |row: &Row| 100.0 * row.mass / total;
+    // By how many last places each is more than the share.
+    let place = |row: &Row| 2.0 * half_of_last_place(&row.cell);
+    let off = |row: &&&Row| Some((row.percent? - share(row)) / place(row));
+    let places: Vec<f64> = rows.iter().filter_map(|row| off(&row)).collect();
+    const ROUNDED: f64 = 1e-6;
+    let are_within = |least: f64, most: f64| {
+        places.iter().all(|off| (least - ROUNDED..=most + ROUNDED).contains(off))
+    };
+    let sum: f64 = rows.iter().map(|row| row.percent.unwrap_or_else(|| share(row))).sum();
+    let last =
+        rows.iter().filter(|row| row.percent.is_some()).map(|row| place(row)).fold(0.0, f64::max);
+    let lacking = rows.len() - places.len();
+    let is_whole = (sum - 100.0).abs() <= last * (lacking as f64 + ROUNDED) + 1e-9;
+    are_within(-0.5, 0.5) || are_within(-1.0, 0.0) || is_whole && are_within(-1.0, 1.0)
 }
 
 #[cfg(test)]
@@ -91,6 +126,58 @@ mod tests {
             prop_assume!((others[at] - shares[at]).abs() > 1.01);
             let table = read(&list(heading, &rows(&others)));
             prop_assert!(table.is_ok(), "{:?}", table);
+        }
+    }
+
+    /// Shares that are cut to their digits, or rounded so that they sum to 100, of all or of an assembly, with cells that are empty.
+    fn shown(shares: &[f64], decimals: i32, is_cut: bool) -> Vec<f64> {
+        let scale = f64::powi(10.0, decimals);
+        let mut shown: Vec<f64> = shares.iter().map(|share| (share * scale).floor()).collect();
+        let lacking = 100.0 * scale - shown.iter().sum::<f64>();
+        let mut by_rest: Vec<usize> = (0..shares.len()).collect();
+        let rest = |at: &usize| (shares[*at] * scale).fract();
+        by_rest.sort_by(|a, b| rest(b).total_cmp(&rest(a)));
+        if !is_cut {
+            by_rest.iter().take(lacking.round() as usize).for_each(|at| shown[*at] += 1.0);
+        }
+        shown.into_iter().map(|share| share / scale).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn shares_in_whatever_digits_are_no_deviations(
+            assemblies in prop::collection::vec(prop::collection::vec(1.0..100.0_f64, 2..6), 1..4),
+            (decimals, is_cut, is_of_all) in (0_i32..4, any::<bool>(), any::<bool>()),
+            (blank, scatter) in (prop::option::of(any::<prop::sample::Index>()), prop::collection::vec(0.5..3.0_f64, 20)),
+        ) {
+            let all: Vec<f64> = assemblies.concat();
+            let of = |masses: &[f64]| {
+                let total: f64 = masses.iter().sum();
+                let shares: Vec<f64> = masses.iter().map(|mass| 100.0 * mass / total).collect();
+                shown(&shares, decimals, is_cut)
+            };
+            let shares = if is_of_all { of(&all) } else { assemblies.iter().flat_map(|masses| of(masses)).collect() };
+            prop_assume!(shares.iter().any(|share| *share != shares[0]) || shares[0] >= 20.0);
+            let blank = blank.map(|at| at.index(all.len())).filter(|_| all.len() > 3);
+            let list = |percents: &[f64]| {
+                let mut text = "name,parent,mass,Cx,Cy,Cz,Ixx,Iyy,Izz,Mass (%)\ncraft,,,,,,,,,\n".to_owned();
+                let mut at = 0;
+                for (i, masses) in assemblies.iter().enumerate() {
+                    text += &format!("bus {i},craft,,,,,,,,\n");
+                    for mass in masses {
+                        let cell = if blank == Some(at) { String::new() } else { format!("{:.*}", decimals as usize, percents[at]) };
+                        text += &format!("part {at},bus {i},{mass},0,0,0,1,1,1,{cell}\n");
+                        at += 1;
+                    }
+                }
+                text
+            };
+            let refused = read(&list(&shares)).err().map(|error| error.to_string());
+            let said = refused.as_ref().is_some_and(|said| said.contains("the share of each part in the mass"));
+            prop_assert!(said, "{}{:?}", list(&shares), refused);
+            // Deviations of some percent of each part are none, whatever the masses.
+            let deviations: Vec<f64> = all.iter().zip(&scatter).map(|(_, s)| *s).collect();
+            prop_assert!(read(&list(&deviations)).is_ok(), "{}", list(&deviations));
         }
     }
 
