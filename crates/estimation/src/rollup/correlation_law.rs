@@ -114,14 +114,15 @@ impl CorrelationLaw {
     /// E C and E C Cᵀ by the trapezoidal rule, which converges faster than any power for a Gaussian.
     pub(super) fn moments(&self) -> (Vector3<f64>, Matrix3<f64>) {
         let (mut total, mut mean, mut squares) = (0.0, Vector3::zeros(), Matrix3::zeros());
+        // Of each distance once: there are thousands of nodes, and a hundred distances.
+        let weight = |square: i32| libm::exp(-0.5 * f64::from(square) * APART * APART);
+        let weights: Vec<f64> = (0..=FAR * FAR).map(weight).collect();
         for i in -FAR..=FAR {
             for j in -FAR..=FAR {
                 for k in -FAR..=FAR {
                     let square = i * i + j * j + k * k;
-                    if square > FAR * FAR {
-                        continue;
-                    }
-                    let weight = libm::exp(-0.5 * f64::from(square) * APART * APART);
+                    // Beyond the last of them nothing counts.
+                    let Some(weight) = weights.get(square as usize).copied() else { continue };
                     let c = self.at(&(Vector3::new(i.into(), j.into(), k.into()) * APART));
                     total += weight;
                     mean += c * weight;

@@ -10,6 +10,7 @@ use gyradius_estimation::{
     Assembly, AssemblyError, AssemblyPart, AssemblyRow, PartError, PartStatement,
 };
 use gyradius_formats::{PartRow, PartsFile, PartsTable};
+use rayon::prelude::*;
 use std::{
     io::Write,
     sync::{
@@ -87,12 +88,15 @@ pub struct RollupDraws {
 }
 
 impl Rollup {
-    /// Puts the rows of a list together.
+    /// Puts the rows of a list together, on all threads of the pool from which it is called.
     ///
     /// # Errors
     /// A part is none, or the rows are no tree; the error names the line.
     pub fn new(table: &PartsTable) -> Result<Self, RollupError> {
-        let rows: Result<Vec<AssemblyRow>, RollupError> = table.rows().iter().map(row).collect();
+        // A law of an inertia is found in milliseconds, one part beside the other. Of several errors, the first counts.
+        let rows: Vec<Result<AssemblyRow, RollupError>> =
+            table.rows().par_iter().map(row).collect();
+        let rows: Result<Vec<AssemblyRow>, RollupError> = rows.into_iter().collect();
         let assembly = Assembly::new(rows?).map_err(|error| {
             // Of a name that stands twice, the second.
             let row = table.rows().iter().rfind(|row| error.row() == Some(row.name()));

@@ -3,6 +3,7 @@
 mod json;
 mod text;
 
+use gyradius_campaign::threads;
 use gyradius_formats::{MAX_BYTES, NewFile, PartsFile, PartsTable, read_text};
 use gyradius_study::{CampaignError, Rollup, RollupDraws, RollupError, RollupOptions, TableFormat};
 use std::{error::Error, path::Path, process::ExitCode};
@@ -31,7 +32,8 @@ struct Shown<'a> {
 pub(crate) fn rollup(arguments: &RollupArgs) -> Result<ExitCode, Box<dyn Error>> {
     let format = arguments.output.as_deref().map(format_of).transpose()?;
     let table = read(arguments)?;
-    let rollup = Rollup::new(&table).map_err(|error| named(arguments, error.file(), &error))?;
+    let rollup = threads(arguments.threads)?.install(|| Rollup::new(&table));
+    let rollup = rollup.map_err(|error| named(arguments, error.file(), &error))?;
     let signals = Signals::watch()?;
     let options = RollupOptions {
         draws: arguments.draws,
