@@ -38,7 +38,7 @@ impl PartColumns {
         }
         let is_label = |at: &usize| {
             let heading = &headings[*at];
-            let may_be = *at == 0 || is_id(heading) || heading::may_be_name(heading);
+            let may_be = *at == 0 || is_id(heading) || heading::rank_as_name(heading).is_some();
             may_be && meanings[*at] == Heading::Other
         };
         let labels = (0..headings.len()).filter(is_label).collect();
@@ -127,8 +127,9 @@ fn meanings(headings: &[String]) -> Vec<Heading> {
         columns[id] = Heading::Other;
     }
     // Words that may say something else are names where nothing else is.
+    let rank = |at: usize| Some((heading::rank_as_name(&headings[at])?, at));
     if names == 0
-        && let Some(at) = headings.iter().position(|heading| heading::may_be_name(heading))
+        && let Some((_, at)) = (0..headings.len()).filter_map(rank).min()
     {
         columns[at] = Heading::Column(Column::Name);
     }

@@ -34,7 +34,7 @@ impl<'a> PartsHeader<'a> {
             let columns: Vec<Heading> = cells.iter().map(|cell| Heading::of(cell)).collect();
             let has = |is: fn(&Heading) -> bool| columns.iter().any(is);
             let has_name = has(|heading| *heading == Heading::Column(Column::Name))
-                || cells.iter().any(|cell| heading::may_be_name(cell))
+                || cells.iter().any(|cell| heading::rank_as_name(cell).is_some())
                 || has(|heading| matches!(heading, Heading::Column(Column::Value(1..=3, _))));
             has_name && has(|heading| matches!(heading, Heading::Column(Column::Value(0, _))))
         };

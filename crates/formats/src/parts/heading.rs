@@ -354,11 +354,12 @@ fn word(plain: &str) -> Option<Column> {
     }
 }
 
-/// Whether a heading may be that of the names, in a list where no other is.
-pub(super) fn may_be_name(text: &str) -> bool {
+/// Whether a heading may be that of the names, in a list where no other is: its rank, of which the lowest counts wherever the column stands.
+pub(super) fn rank_as_name(text: &str) -> Option<usize> {
     let known =
         ["partname", "itemname", "componentname", "bodyname", "item", "element", "description"];
-    known.contains(&squeezed(text).as_str())
+    let plain = squeezed(text);
+    known.iter().position(|word| *word == plain)
 }
 
 /// A product below the diagonal, if its unit is read: `Iyx [kg m2]`.
