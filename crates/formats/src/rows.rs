@@ -78,6 +78,7 @@ impl<'a> Rows<'a> {
 
     /// Those from an offset on, of which a line tells the separator.
     pub(crate) fn at(text: &'a str, at: usize, line: &str) -> Self {
+        let line = record(&text[at..], line);
         // What follows the line tells which of its marks part numbers as well.
         let behind = text[at..].strip_prefix(line).unwrap_or_default();
         let row = behind.lines().find(|line| !is_comment(line)).unwrap_or_default();
@@ -237,6 +238,33 @@ fn is_numbered(line: &str) -> bool {
     first.is_empty() && rest.starts_with(char::is_alphabetic)
         || digits > 0
             && (first[digits..].trim().is_empty() || first[digits..].contains(char::is_alphabetic))
+}
+
+/// A line with those that belong to it: a quotation mark at the beginning of a cell may be closed in a later line. Where it is closed nowhere, the line alone.
+fn record<'a>(text: &'a str, line: &'a str) -> &'a str {
+    let is_even = |part: &str| part.matches('"').count() % 2 == 0;
+    let opens_cell = |before: &str| {
+        let before = before.trim_end_matches(' ');
+        before.is_empty() || before.ends_with(SEPARATORS)
+    };
+    if is_even(line) || !line.rsplit_once('"').is_some_and(|(before, _)| opens_cell(before)) {
+        return line;
+    }
+    let behind = text.get(line.len()..).unwrap_or_default();
+    let Some(mut end) = behind.match_indices('"').map(|(at, _)| line.len() + at + 1).next() else {
+        return line;
+    };
+    // In the line of the mark that closes the cell, another one may open the next.
+    loop {
+        end += text[end..].find('\n').map_or(text.len() - end, |newline| newline + 1);
+        if is_even(&text[..end]) {
+            return &text[..end];
+        }
+        match text[end..].find('"') {
+            Some(at) => end += at + 1,
+            None => return line,
+        }
+    }
 }
 
 /// What there is as often in a header as in the row below it, or else most of in the header; a comma where nothing is. What

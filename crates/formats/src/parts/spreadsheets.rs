@@ -1,10 +1,35 @@
 //! Lists of parts as spreadsheets have them: titles, rows of units, totals, columns of other things.
 
-use super::tests::read;
+use super::{PartRow, tests::read};
 use proptest::prelude::*;
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// Headings may have line breaks in quotation marks, in every place and with every separator: the list is the same.
+    #[test]
+    #[test]
+    fn headings_may_have_line_breaks(
+        broken in prop::array::uniform8(any::<bool>()),
+        (separator, end, quoted) in (prop::sample::select(vec![",", ";", "\t"]), prop::sample::select(vec!["\n", "\r\n"]), any::<bool>()),
+        has_title: bool,
+    ) {
+        const HEADINGS: [&str; 8] = ["Part name", "Mass (kg)", "Cx (m)", "Cy (m)", "Cz (m)", "Ixx (kg m2)", "Iyy (kg m2)", "Izz (kg m2)"];
+        let heading = |(text, is_broken): (&&str, &bool)| match (is_broken, quoted) {
+            (true, _) => format!("\"{}\"", text.replacen(' ', end, 1)),
+            (false, true) => format!("\"{text}\""),
+            (false, false) => (*text).to_owned(),
+        };
+        let header: Vec<String> = HEADINGS.iter().zip(&broken).map(heading).collect();
+        let rows = ["tank", "2", "0", "1", "0", "1", "1", "1"].join(separator);
+        let title = if has_title { "Parts of a 12\" tube".to_owned() + end } else { String::new() };
+        let text = format!("{title}{}{end}{rows}{end}", header.join(separator));
+        let table = read(&text);
+        let table = table.map_err(|error| TestCaseError::fail(format!("{text}{error}")))?;
+        let numbers = table.rows()[0].numbers().unwrap();
+        prop_assert_eq!((table.rows()[0].name(), numbers.mass_kg()), ("tank", 2.0));
+    }
+
 
     /// As spreadsheets have them: titles above, the units in a row of their own, some columns without.
     #[test]
@@ -226,5 +251,26 @@ proptest! {
         // Products of zero say nothing.
         let zero = "name,mass,Cx,Cy,Cz,kx,ky,kz,ixy,ixz,iyz\nit,1,0,0,0,1,1,1,0,0,0\n";
         prop_assert!(read(zero).is_ok());
+    }
+}
+
+/// Where two columns may hold the names, their order changes nothing.
+#[test]
+fn the_order_of_columns_changes_no_name() {
+    let columns =
+        ["Part Name", "item_name", "Component Name", "Body name", "Item", "ELEMENT", "Description"];
+    for (rank, first) in columns.iter().enumerate() {
+        for second in &columns[rank + 1..] {
+            for [left, right] in [[first, second], [second, first]] {
+                let of = |heading: &&str, row: usize| format!("{} {row}", heading.to_lowercase());
+                let mut text = format!("{left},{right},mass,Cx,Cy,Cz,Ixx,Iyy,Izz\n");
+                for row in 0..2 {
+                    text += &format!("{},{},1,{row},0,0,1,1,1\n", of(left, row), of(right, row));
+                }
+                let table = read(&text).unwrap();
+                let names: Vec<&str> = table.rows().iter().take(2).map(PartRow::name).collect();
+                assert_eq!(names, [of(first, 0), of(first, 1)], "{text}");
+            }
+        }
     }
 }
