@@ -1,18 +1,10 @@
 //! What a line says of the sign of products, be it a title or a comment of a table.
 
-use crate::{Products, body::entry_of, spread::words};
-
-/// What the products are called as a whole, where `product` may be that of a company.
-const NAMES: [&str; 4] = ["products", "poi", "pois", "poiconv"];
-
-/// Words that speak of a sign.
-const OF_SIGNS: [&str; 4] = ["sign", "signs", "convention", "conventions"];
-
-/// Words that change nothing in a statement on the sign of products.
-const NEUTRAL: [&str; 19] = [
-    "of", "the", "for", "are", "is", "as", "and", "in", "this", "these", "file", "given",
-    "defined", "others", "inertia", "entries", "entry", "elements", "terms",
-];
+use crate::{
+    Products,
+    products_implied::implies_sign,
+    products_words::{NAMES, is_neutral, is_of_sign, is_products, speaks_of_products, split},
+};
 
 /// What a line says of the products.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,42 +45,13 @@ pub(crate) fn said(line: &str) -> Said {
     };
     let is_of_products = speaks_of_products(&line)
         || !named.is_empty() && (has_sign() || asserted(&line).is_some_and(is_convention));
-    if !is_of_products {
-        return Said::Nothing;
-    }
-    let is_unclear = if named.is_empty() { is_vague(&line) } else { !is_method(&line) };
-    match clear(&line) {
+    let is_stated = || if named.is_empty() { is_vague(&line) } else { !is_method(&line) };
+    let is_unclear = is_of_products && is_stated() || implies_sign(&line);
+    match clear(&line).filter(|_| is_of_products) {
         Some(products) => Said::Clear(products),
         None if is_unclear => Said::Unclear,
         None => Said::Nothing,
     }
-}
-
-/// The words of a text, none of them empty.
-fn split(text: &str) -> impl Iterator<Item = &str> {
-    words(text).filter(|word| !word.is_empty())
-}
-
-/// Whether a word is that of products, or the name of one.
-fn is_products(word: &str) -> bool {
-    // `Ixy`, and what is left of `I_xy`, but not the number 12.
-    let is_entry = |name: &str| entry_of(name).is_some_and(|entry| entry >= 3);
-    word == "product"
-        || NAMES.contains(&word)
-        || is_entry(word)
-        || word.len() == 2 && word.starts_with(char::is_alphabetic) && is_entry(&format!("i{word}"))
-}
-
-fn is_of_sign(word: &str) -> bool {
-    OF_SIGNS.contains(&word)
-}
-
-fn is_neutral(word: &str) -> bool {
-    NEUTRAL.contains(&word)
-}
-
-fn speaks_of_products(text: &str) -> bool {
-    split(text).any(is_products)
 }
 
 /// What a plain statement says: `products = integrals`, `the products are entries of the inertia tensor`, with no words but these.
