@@ -40,7 +40,44 @@ pub(crate) fn plain(line: &str) -> String {
         plain.push(raised.unwrap_or(c));
         is_behind_digit = c.is_ascii_digit();
     }
-    plain.replace("U.S.", "US")
+    without_dots(&plain)
+}
+
+/// A line in which letters with dots between them are one word: `c.g.` becomes `cg`, `w.r.t.` wrt and `U.S.` US, but `g.m` stays.
+pub(crate) fn without_dots(line: &str) -> String {
+    let letters: Vec<char> = line.chars().collect();
+    let is_dot = |at: usize| letters.get(at) == Some(&'.');
+    let is_one = |at: usize| {
+        let is_part = |at: usize| letters.get(at).is_some_and(|c| c.is_alphanumeric());
+        letters.get(at).is_some_and(|c| c.is_alphabetic())
+            && !is_part(at + 1)
+            && !at.checked_sub(1).is_some_and(is_part)
+    };
+    let mut plain = String::with_capacity(line.len());
+    let mut at = 0;
+    while let Some(letter) = letters.get(at) {
+        let mut end = at;
+        while is_one(end) && is_dot(end + 1) {
+            end += 2;
+        }
+        // Without a dot behind, it may be a product of two units.
+        let is_open = is_one(end) && end > at;
+        let is_sure = end - at >= 4 || letter.eq_ignore_ascii_case(&'c');
+        if end - at >= 4 && !is_open || is_open && is_sure {
+            plain.extend(
+                letters
+                    .iter()
+                    .skip(at)
+                    .take(end + usize::from(is_open) - at)
+                    .filter(|c| **c != '.'),
+            );
+            at = end + usize::from(is_open);
+        } else {
+            plain.push(*letter);
+            at += 1;
+        }
+    }
+    plain
 }
 
 /// The words of a line, of which the runs and the same in small letters are given.
