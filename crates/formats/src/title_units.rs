@@ -19,8 +19,21 @@ const LINES: usize = 1000;
 /// Systems of units that alone are names of something else.
 const NAMES: [&str; 3] = ["us", "british", "mgs"];
 
-/// Units that are something else beside the name of what is measured: the `inertia of the foot`, `Ixy = -∫xy dm`.
-const DOUBTFUL: [&str; 4] = ["foot", "feet", "dm", "um"];
+/// Words beside which English is a language.
+const LANGUAGES: [&str; 9] = [
+    "language",
+    "sprache",
+    "langue",
+    "german",
+    "deutsch",
+    "french",
+    "français",
+    "español",
+    "italiano",
+];
+
+/// Units that are something else beside the name of what is measured: the `inertia of the foot`, `Ixy = -∫xy dm`, `dyn. moments`.
+const DOUBTFUL: [&str; 5] = ["foot", "feet", "dm", "um", "dyn"];
 
 /// Why a table is refused that has columns without units, if a line above its header, or a comment below it, says that units are others
 /// than those of SI.
@@ -51,6 +64,7 @@ fn speaks_of_others(line: &str) -> bool {
         has_units: words.iter().any(|word| word.is_of(Kind::Units)),
         of_several: words.iter().any(Word::is_of_several),
         is_capital: runs.iter().all(|run| run.is_capital),
+        of_languages: lower.iter().any(|word| LANGUAGES.contains(&word.as_str())),
     };
     clauses(&words).any(|clause| {
         let value = clause.iter().rposition(|word| word.run.gap.contains([':', '=']));
@@ -86,6 +100,8 @@ struct Said {
     of_several: bool,
     /// Whether it has no small letters, so that capitals mean nothing.
     is_capital: bool,
+    /// Whether it has a word for a language.
+    of_languages: bool,
 }
 
 impl Said {
@@ -126,6 +142,7 @@ impl Said {
                 Kind::Amount | Kind::Length if !is_clear => false,
                 Kind::Length if word.is_in() => is_inch,
                 Kind::Amount | Kind::Length => is_stated || !is_beside || !DOUBTFUL.contains(part),
+                Kind::System if self.of_languages && *part == "english" => false,
                 Kind::System => self.has_units || is_whole && !NAMES.contains(part),
                 Kind::Time | Kind::Units | Kind::Measured | Kind::Beside => false,
             })
@@ -276,6 +293,8 @@ mod tests {
             of_another in select(&[
                 "CM in m", "t in s", "CM frame", "inertia about CM in kg m2", "density in {unit}/m3", "areal mass {unit}/m2", "density: {unit}/cm^3",
                 "converted from {unit}", "not {unit} and mm", "converted from {unit}, in", "MLI of {unit}/cm²",
+                "volume in mm3", "stress in N/mm2", "stiffness [kN/mm]", "inertia w.r.t. CG", "mass t.b.d.", "originally in {unit} and mm", "drawn by G. Foot",
+                "inertia per MIL-STD", "dyn. moments",
             ][..]),
             unit in select(&["g", "lb", "slug", "oz", "mg", "t"][..]),
             after in select(&["", ", kg", "; inertia in kg m2"][..]),
@@ -304,6 +323,15 @@ mod tests {
     #[test]
     fn titles_are_judged_by_what_they_state() {
         for line in [
+            "# Inertia w.r.t. CG in g mm2",
+            "# Mass: t.b.d., lengths in mm",
+            "# Language: English. Units: English, lb",
+            "# Volume in mm3, mass in g",
+            "# Stress in N/mm2; lengths in mm",
+            "# Author: G. Foot, units: foot",
+            "# Mass per MIL-STD in lb",
+            "# Masses in t.",
+            "# U.S. units",
             "# Unit system: MMGS",
             "All units: g, m",
             "Units: tonne, m",
@@ -367,6 +395,20 @@ mod tests {
             "# Newtons: N, m, s",
             "# Inertia of the foot",
             "# Foot inertia",
+            "# Inertia w.r.t. CG",
+            ",Mass,Moments of inertia w.r.t. CG,,",
+            "# MOI w.r.t. c.g. of each part",
+            "# Mass: t.b.d.",
+            "# Inertia t.b.d., mass in kg",
+            "# inertia per MIL-STD",
+            "# dyn. moments",
+            "# Mass (English), Masse (Deutsch)",
+            "# Language: English",
+            "# Volume in mm3",
+            "# Young's modulus: GPa, N/mm2",
+            "# stiffness: N/mm",
+            "# Originally in mm and g; converted to SI",
+            "# Author: G. Foot",
             "# Ixy = -∫xy dm",
             "# products are tensor entries (I12 = -∫xy dm)",
             "# state at t = 0, about the mass centre",

@@ -91,11 +91,35 @@ pub(crate) fn words<'a>(runs: &'a [Run<'a>], lower: &'a [String]) -> Vec<Word<'a
             let word = Word { run, parts: parts(lower, has_two).unwrap_or_default() };
             // Units behind one of these are none of the table, up to the next word or unit of SI: `not g and mm`, `(converted from lb, in)`.
             let is_more = run.is_number() || lower == "and" || word.is_measure() && word.is_other();
-            is_denied = lower == "not" || lower == "from" || is_denied && is_more;
+            let denies = ["not", "from", "originally"].contains(&lower);
+            is_denied = denies || is_denied && is_more;
             words.push(if is_denied { Word { run, parts: Vec::new() } } else { word });
         }
     }
+    let are_names: Vec<bool> = (0..words.len()).map(|at| is_of_name(&words, at)).collect();
+    for (word, _) in words.iter_mut().zip(are_names).filter(|(_, is_name)| *is_name) {
+        word.parts.clear();
+    }
     words
+}
+
+/// Whether a word belongs to a name: the capitals of `MIL-STD`, and `G. Foot`.
+fn is_of_name(words: &[Word<'_>], at: usize) -> bool {
+    let is_joined = |pair: &[Word<'_>]| {
+        let [word, next] = pair else { return false };
+        let is_of_another = next.parts.is_empty() && !next.run.is_number();
+        word.run.is_capital && next.run.gap == "-" && is_of_another
+    };
+    let is_initial = |pair: &[Word<'_>]| {
+        let [word, next] = pair else { return false };
+        let begins = next.run.text.starts_with(char::is_uppercase) && !next.run.is_capital;
+        let is_letter = word.run.is_capital && word.run.text.chars().count() == 1;
+        is_letter && next.run.gap == ". " && begins
+    };
+    let pair = |at: usize| words.get(at..at + 2).unwrap_or_default();
+    is_joined(pair(at))
+        || is_initial(pair(at))
+        || at.checked_sub(1).is_some_and(|before| is_initial(pair(before)))
 }
 
 /// The clauses of a line.
@@ -140,7 +164,7 @@ impl Word<'_> {
 }
 
 /// Whether a word in a clause is the name of what is measured there, `t in s` and `CM in m`, or of a point, `CM frame`, or a part of the unit of
-/// something else, as a density is: `g/cm3`.
+/// something else, as a density is: `g/cm3`, a volume or a stress.
 fn is_of_another(words: &[Word<'_>], at: usize) -> bool {
     let word = |at: usize| words.get(at);
     let Some(one) = word(at) else { return false };
@@ -160,15 +184,26 @@ fn is_of_another(words: &[Word<'_>], at: usize) -> bool {
         let is_named = words.iter().any(|word| word.parts.is_empty() && !word.run.is_number());
         is_named && !words.iter().any(|word| word.measures(Dimension::Inertia))
     };
+    let power = |at: usize| word(at + 1).filter(|power| ["", "^"].contains(&power.run.gap));
+    let amount =
+        |at: usize| at.checked_sub(1).and_then(word).filter(|unit| unit.is_of(Kind::Amount));
+    let is_length = |at: usize| word(at).is_some_and(|unit| unit.is_of(Kind::Length));
+    let is_volume =
+        is_length(at) && amount(at).is_none() && power(at).is_some_and(|p| p.run.text == "3");
+    let is_force = |unit: &Word<'_>| {
+        unit.parts.iter().any(|(_, part)| ["n", "kn", "mn", "dan", "lbf", "kgf"].contains(part))
+    };
     let is_divided = |at: usize| {
-        let power = word(at + 1).filter(|power| ["", "^"].contains(&power.run.gap));
-        word(at).is_some_and(|unit| unit.is_of(Kind::Length) && unit.run.gap == "/")
-            && at.checked_sub(1).and_then(word).is_some_and(|unit| unit.is_of(Kind::Amount))
-            && power.is_some_and(|power| {
-                power.run.text == "3" || power.run.text == "2" && names_another()
+        is_length(at)
+            && word(at).is_some_and(|unit| unit.run.gap == "/")
+            && amount(at).is_some_and(|unit| {
+                is_force(unit)
+                    || power(at).is_some_and(|power| {
+                        power.run.text == "3" || power.run.text == "2" && names_another()
+                    })
             })
     };
-    is_measured || is_point || is_divided(at) || is_divided(at + 1)
+    is_measured || is_point || is_volume || is_divided(at) || is_divided(at + 1)
 }
 
 /// Which words of a clause are units or stand beside units, and neither say how much something is, as in `300 mg` and `0.3 g/cm3`, nor are
