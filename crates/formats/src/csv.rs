@@ -97,6 +97,8 @@ fn reading<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::{prelude::*, sample::select};
+
     fn try_read(csv: &str) -> Result<Vec<FileBody>, Refusal> {
         let read = read(&Text::new(csv.as_bytes(), true).unwrap(), Products::TensorEntries);
         read.map(|(bodies, _)| bodies)
@@ -218,13 +220,44 @@ mod tests {
         }
         assert_eq!(count, 3 * 243);
         // A row that is no units is a row; one that contradicts the header is refused.
-        let bodies = try_read("ixx,iyy,izz\nkg m2,furlongs,kg m2\n1,2,3").unwrap();
+        let bodies = try_read("ixx,iyy,izz\nn/a,furlongs,-\n1,2,3").unwrap();
         assert!(bodies.len() == 2 && bodies[0].inertia().is_err());
         let message = |csv| try_read(csv).unwrap_err().problem.to_string();
         let both = message("ixx [kg m2],iyy,izz\ng mm2,,\n1,2,3");
         assert!(both.contains("the header says kg m2, and the row below it g mm2"), "{both}");
         assert!(message("# ixx,iyy,izz,Ixx\n1,2,3,4").contains("two columns for ixx"));
         assert!(message("# ixx and iyy\n1,2,3").contains("columns ixx, iyy and izz"));
+    }
+
+    proptest! {
+        /// A row without numbers that speaks of units is one of units, whatever its length and wherever they stand: it counts, or the table is refused.
+        #[test]
+        fn rows_of_units_are_no_bodies(
+            (mass, kg) in select(&[("", None), ("kg", Some(1.0)), ("g", Some(1e-3)), ("kilograms", None), ("stone", None)][..]),
+            (inertia, kg_m2) in select(&[
+                ("", None), ("kg m2", Some(1.0)), ("g mm2", Some(1e-9)), ("kg·mm²", Some(1e-6)), ("oz in2", None), ("kilogram m2", None), ("gram mm^2", None),
+            ][..]),
+            name in select(&["", "Units", "a"][..]),
+            has_all in any::<bool>(),
+            more in select(&["", ",", ",,"][..]),
+        ) {
+            let second = if has_all { inertia } else { "" };
+            let text = format!("name,mass,ixx,iyy,izz,note\n{name},{mass},{inertia},{second},{inertia}{more}\na,2,3,4,5,x\n");
+            // A word that nobody knows may be a note.
+            prop_assume!(mass != "stone" || !inertia.is_empty());
+            let of = |unit: &str, si: Option<f64>| if unit.is_empty() { Some(1.0) } else { si };
+            let is_lacking = |unit: &str, other: Option<f64>| unit.is_empty() && other.is_some_and(|si| si != 1.0);
+            let expected = of(mass, kg).zip(of(inertia, kg_m2)).filter(|_| !is_lacking(mass, kg_m2) && !is_lacking(inertia, kg));
+            let found = try_read(&text).ok().map(|bodies| {
+                let body = bodies.last().unwrap();
+                (body.mass_kg().unwrap() / 2.0, six(body)[0] / 3.0)
+            });
+            let is_same = match (found, expected) {
+                (Some(found), Some(expected)) => (found.0 / expected.0 - 1.0).abs() < 1e-12 && (found.1 / expected.1 - 1.0).abs() < 1e-12,
+                (found, expected) => found.is_none() && expected.is_none(),
+            };
+            prop_assert!(is_same, "{}{:?} {:?}", text, found, expected);
+        }
     }
 
     #[test]

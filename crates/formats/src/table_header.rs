@@ -183,16 +183,17 @@ pub(crate) fn unit_below(
     Unit::of(written, dimension).map_err(bad)
 }
 
-/// The units in a row below a header, none where a field is empty: nothing if one of the fields that count
-/// is no unit, or all of them are empty.
+/// The units in a row below a header, none where a field is empty: nothing if all of those that count are empty, or if one of them is no unit,
+/// unless the row has no numbers and speaks of units, which may not be known.
 fn units_below(
     text: &Text,
     columns: &[Option<usize>],
     row: &[Field],
 ) -> Option<Vec<Result<Unit, BadUnit>>> {
-    let unit = |(column, field): (&Option<usize>, &Field)| match column {
-        Some(column) if *column <= MASS => unit_below(text, field, dimension(*column)),
-        Some(_) | None => Ok(Unit::none()),
+    let of_number = |column: &Option<usize>| column.filter(|column| *column <= MASS);
+    let unit = |(column, field): (&Option<usize>, &Field)| {
+        of_number(column)
+            .map_or(Ok(Unit::none()), |column| unit_below(text, field, dimension(column)))
     };
     let units: Vec<_> = columns.iter().zip(row).map(unit).collect();
     let is_stated =
@@ -200,8 +201,15 @@ fn units_below(
     let is_known = |unit: &Result<Unit, BadUnit>| {
         !matches!(unit, Err(BadUnit { problem: UnitProblem::Unknown { .. }, .. }))
     };
-    let some = columns.iter().zip(&units).any(|(c, u)| c.is_some_and(|c| c < MASS) && is_stated(u));
-    (row.len() == columns.len() && some && units.iter().all(is_known)).then_some(units)
+    let cells = columns.iter().zip(row).filter(|(column, _)| of_number(column).is_some());
+    let cells: Vec<&str> = cells.map(|(_, field)| field.of(text.as_str())).collect();
+    let is_number = |cell: &&str| {
+        let first = cell.split_whitespace().next();
+        first.is_some_and(|first| first.parse::<f64>().is_ok())
+    };
+    let are_units = units.iter().all(is_known)
+        || cells.iter().any(|cell| speaks_of_a_unit(cell)) && !cells.iter().any(is_number);
+    (are_units && units.iter().any(is_stated)).then_some(units)
 }
 
 /// What the fields of a row are as headings.
