@@ -10,7 +10,7 @@ const MANY: f64 = 0.05;
 /// as where a simulation breaks down beyond some value of the quantity.
 ///
 /// It is told if the estimate and the least share of them together are beyond the interval, or if runs nearer to the event fail surely more
-/// often than others: a twentieth of them or more, or any where no event was found. Runs that have no number and did not fail, as of
+/// often than others: any where no event was found, and for subset simulation a twentieth of them or more. Runs that have no number and did not fail, as of
 /// bodies that do not meet, do not count: of these it is known that they are not the event.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RareFailures {
@@ -47,14 +47,14 @@ impl Counts {
 }
 
 /// What is known of the failures.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Failures {
     /// Of plain runs.
     pub(super) plain: Counts,
-    /// Of runs nearer to the event: those of later levels, or of the sample.
+    /// Of runs nearer to the event: those of later levels, and of the sample.
     pub(super) nearer: Counts,
-    /// The runs of a sample with their weights, those that failed as hits.
-    pub(super) weighted: Option<ImportanceSampling>,
+    /// The runs of each law that was steered to, those of the searches and of the sample, with their weights and those that failed as hits.
+    pub(super) weighted: Vec<ImportanceSampling>,
 }
 
 impl Failures {
@@ -64,27 +64,31 @@ impl Failures {
         probability: f64,
         interval: Interval,
     ) -> Result<Option<RareFailures>, StatisticsError> {
-        let plain = self.plain.share()?;
-        let weighted = match self.weighted {
-            Some(sample) => {
-                let all = sample.finish(Confidence::default())?;
-                (all.hits() > 0).then(|| (all.probability(), all.interval()))
-            }
-            None => None,
+        let mut told = Vec::from_iter(self.plain.share()?);
+        for runs in &self.weighted {
+            let all = runs.finish(Confidence::default())?;
+            told.extend((all.hits() > 0).then(|| (all.probability(), all.interval())));
+        }
+        // Plain runs know failures anywhere better, steered ones those that are rare and near the event. What was steered away from them, as
+        // the sample is once runs that fail are no events, sees few of them, so that any of these counts that has seen enough.
+        let matters = |(share, all): &(f64, Interval)| {
+            *share > 0.0 && probability + all.lower() > interval.upper()
         };
-        // Plain runs know failures anywhere better, the sample those that are rare and near the event.
-        let width = |interval: &Interval| interval.upper() / interval.lower();
-        let told = plain.into_iter().chain(weighted);
-        let told = told.min_by(|a, b| width(&a.1).total_cmp(&width(&b.1)));
+        let order =
+            |(share, all): &(f64, Interval)| (!matters(&(*share, *all)), all.upper() / all.lower());
+        let told = told.into_iter().min_by(|a, b| {
+            let (a, b) = (order(a), order(b));
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        });
         let Some((share, of_all)) = told else { return Ok(None) };
         let nearer = self.nearer.share()?;
         let nearer = nearer.filter(|(_, nearer)| nearer.lower() > of_all.upper());
         let nearer = nearer.map(|(share, _)| share);
-        let matters = share > 0.0 && probability + of_all.lower() > interval.upper();
         let more = nearer.is_some_and(|nearer| {
             // Weights tell how much failures near the event amount to, chains do not.
-            probability == 0.0 || (self.weighted.is_none() && nearer >= MANY)
+            probability == 0.0 || (self.weighted.is_empty() && nearer >= MANY)
         });
-        Ok((matters || more).then_some(RareFailures { share, interval: of_all, nearer }))
+        let is_told = matters(&(share, of_all)) || more;
+        Ok(is_told.then_some(RareFailures { share, interval: of_all, nearer }))
     }
 }

@@ -44,6 +44,13 @@ pub(super) fn find<C: Subject>(
         let outcomes = runs.outcomes(drawing, count)?;
         if search.law().is_own() {
             failures.plain.add(&outcomes.failed);
+        } else {
+            let mut level = ImportanceSampling::new();
+            for (scores, failed) in scores.iter().zip(&outcomes.failed) {
+                level.push(search.law().log_weight(scores), *failed)?;
+            }
+            failures.weighted.push(level);
+            failures.nearer.add(&outcomes.failed);
         }
         search.tell(&scores.into_iter().zip(outcomes.excesses).collect::<Vec<_>>())?;
         first += count;
@@ -63,7 +70,7 @@ pub(super) fn find<C: Subject>(
         }
         first += count;
     }
-    failures.weighted = Some(weighted);
+    failures.weighted.push(weighted);
     Ok((sampling.finish(Confidence::default())?, !search.law().is_own()))
 }
 

@@ -109,6 +109,39 @@ fn failures_that_change_nothing_are_no_warning() {
     }
 }
 
+/// Of two ways to an event one fails, from below the event's limit on: the search turns away from it, the sample hardly sees it, and the
+/// share of these runs is told all the same. Where the failures lie far beyond the limit, they are too few to matter, and none is told.
+#[test]
+fn a_way_that_fails_is_told_beside_one_that_does_not() {
+    fn two_ways(x: &[f64], from: f64) -> Result<f64, ()> {
+        if x[0] > from { Err(()) } else { Ok(x[0].max(x[1])) }
+    }
+    fn two_sides(x: &[f64], from: f64) -> Result<f64, ()> {
+        if x[0] > from { Err(()) } else { Ok(x[0].abs()) }
+    }
+    let models: [(Model, f64); 6] = [
+        (|x, _| two_ways(x, 4.0), 4.0),
+        (|x, _| two_ways(x, 3.5), 3.5),
+        (|x, _| two_ways(x, 5.5), 5.5),
+        (|x, _| two_sides(x, 4.2), 4.2),
+        (|x, _| two_sides(x, 3.5), 3.5),
+        (|x, _| two_sides(x, 5.5), 5.5),
+    ];
+    for (model, from) in models {
+        for seed in 0..6 {
+            let found = find(model, "y >= 4.2", RareMethod::Importance { sample: 3000 }, seed);
+            let told = failures(&found);
+            assert_eq!(told.is_some(), from < 5.0, "{from} {seed}: {found}");
+            let truth = tail::normal(from);
+            let holds = |failures: RareFailures| {
+                let interval = failures.interval;
+                interval.lower() / 2.0 < truth && truth < 2.0 * interval.upper()
+            };
+            assert!(told.is_none_or(holds), "{from} {seed}: {found}");
+        }
+    }
+}
+
 /// Failures at random that are far more frequent than the event are told of by their share, and not as if they were near the event.
 #[test]
 fn failures_at_random_are_not_said_to_be_near_the_event() {
