@@ -78,6 +78,7 @@ mod number;
 mod origin;
 mod requirement;
 mod room;
+mod run_names;
 mod runs;
 mod runs_error;
 mod sample;
@@ -131,6 +132,7 @@ pub use requirement::{
     share_in_percent, stated_in_percent,
 };
 pub use room::disk_left;
+pub use run_names::RunNames;
 pub use runs::Runs;
 pub use runs_error::RunsError;
 pub use sample::{SampleSummary, bounded};

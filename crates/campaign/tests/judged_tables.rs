@@ -287,13 +287,19 @@ fn a_run_counts_once() {
     ] {
         let error = twice(text).unwrap();
         assert!(error.starts_with("it: two rows are of the run 0 of the model \"a\""), "{error}");
+        for name in ["-7", "case0", "1152921504606846977", "a b"] {
+            let error = twice(&text.replace(",0,", &format!(",{name},"))).unwrap();
+            let said = format!("it: two rows are of the run {name} of the model \"a\"");
+            assert!(error.starts_with(&said), "{error}");
+        }
     }
     for text in [
         "run,x\n0,1\n0,1\n",
         "model,x\na,1\na,1\n",
         "model,run,x\na,0,1\nb,0,1\na,1,1\nb,1,1\n",
         "model,run,x\na,,1\na,,1\n",
-        "model,run,x\na,first,1\na,first,1\n",
+        "model,run,x\na,first,1\na,second,1\n",
+        "model,run,x\na,0.5,1\na,0.5,1\n",
         "model,model,run,x\na,a,0,1\na,a,0,1\n",
     ] {
         assert_eq!(twice(text), None, "{text}");

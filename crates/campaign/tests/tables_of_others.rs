@@ -121,7 +121,12 @@ fn runs_that_stand_twice_are_seen_however_they_are_named() {
         (Physical::INT64, ConvertedType::UINT_64, ["1", "2"]),
         (Physical::BOOLEAN, ConvertedType::NONE, ["true", "false"]),
     ];
-    const RUNS: [(Physical, ConvertedType, [&str; 2]); 5] = [
+    const RUNS: [(Physical, ConvertedType, [&str; 2]); 10] = [
+        (Physical::INT64, ConvertedType::NONE, ["-1", "-2"]),
+        (Physical::INT64, ConvertedType::NONE, ["1152921504606846976", "1152921504606846977"]),
+        (Physical::INT64, ConvertedType::UINT_64, ["18000000000000000000", "18000000000000000001"]),
+        (Physical::DOUBLE, ConvertedType::NONE, ["-1", "-2"]),
+        (Physical::BYTE_ARRAY, ConvertedType::UTF8, ["case0", "case1"]),
         (Physical::INT64, ConvertedType::NONE, ["0", "1"]),
         (Physical::INT32, ConvertedType::UINT_32, ["3000000000", "3000000001"]),
         (Physical::INT64, ConvertedType::UINT_64, ["3000000000", "3000000001"]),

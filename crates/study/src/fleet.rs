@@ -1,6 +1,6 @@
 //! Vehicles and their flights: which of them a run is.
 
-use gyradius_campaign::{Column, Counting, ForeignError, ForeignTable, Kind, Spans};
+use gyradius_campaign::{Column, Counting, ForeignError, ForeignTable, Kind, RunNames, Spans};
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, collections::BTreeMap, fmt, iter};
 
@@ -141,7 +141,7 @@ impl Fleet {
     }
 }
 
-/// That no run stands twice among the rows that no column `model` says the model of: their run tells them apart, with the vehicle and the flight where
+/// That no run stands twice among the rows that no column `model` says the model of: the number or text in the column `run` tells them apart, with the vehicle and the flight where
 /// there are such columns. Of those with a model, judging tells.
 fn again(table: &ForeignTable) -> Result<(), ForeignError> {
     // Of several columns of models nobody knows which says it.
@@ -151,50 +151,48 @@ fn again(table: &ForeignTable) -> Result<(), ForeignError> {
     let of_fleet = Fleet::columns();
     let apart = of_fleet.iter().flat_map(|column| table.alike(column.name()));
     let names: Vec<String> = iter::once(run).chain(apart).cloned().collect();
-    // False if the column names no runs, as judging sees it: it is of another program.
-    let each = |look: &mut dyn FnMut(u64, &[u64])| {
-        let (mut first, mut all_whole, mut numbers) = (0, true, Vec::with_capacity(names.len()));
-        table.scan_of_models(&[], &names, |columns, models| {
-            for (row, model) in (0..).zip(models) {
-                // A table may have a million rows, which share the memory of one.
-                numbers.clear();
-                let whole = |cells: &Vec<Option<f64>>| cells[row].and_then(Column::run_named);
-                numbers.extend(columns.iter().map_while(whole));
-                all_whole &= !numbers.is_empty();
-                if model.is_none() && numbers.len() == columns.len() {
-                    look(first + row as u64, &numbers);
-                }
+    let model = table.alike(Column::MODEL);
+    let columns: Vec<String> = names.iter().chain(model).cloned().collect();
+    // The run of a row without a model, and what tells it from others of the same number.
+    let each = |look: &mut dyn FnMut(u64, &str, &[String])| {
+        let mut rows = 0..;
+        table.scan_texts(&columns, |_, cells| {
+            let row = rows.next().unwrap_or_default();
+            let (cells, model) = cells.split_at(names.len());
+            let [run, apart @ ..] = cells else { return };
+            let run = RunNames::of(run).filter(|_| model.iter().all(|cell| cell.trim().is_empty()));
+            if let Some(run) = run {
+                look(row, &run, apart);
             }
-            first += models.len() as u64;
-        })?;
-        Ok::<_, ForeignError>(all_whole)
+        })
     };
+    let whole = |cell: &String| RunNames::of(cell).map_or_else(String::new, Cow::into_owned);
     let twice = |is_apart: bool| {
-        let (mut seen, mut twice) = (BTreeMap::<Vec<u64>, Spans>::new(), None);
-        let is_known = each(&mut |_, numbers| {
-            if let ([run, apart @ ..], None) = (numbers, &twice) {
-                let apart = if is_apart { apart.to_vec() } else { Vec::new() };
-                let added = seen.entry(apart).or_default().add(*run, 0);
-                twice = added.is_err().then(|| numbers.to_vec());
+        let (mut seen, mut twice) = (BTreeMap::<Vec<String>, RunNames>::new(), None);
+        each(&mut |_, run, apart| {
+            if twice.is_none() {
+                let apart = if is_apart { apart.iter().map(whole).collect() } else { Vec::new() };
+                let added = seen.entry(apart.clone()).or_default().add(run, 0);
+                twice = added.is_err().then(|| (run.to_owned(), apart));
             }
         })?;
-        Ok::<_, ForeignError>(twice.filter(|_| is_known))
+        Ok::<_, ForeignError>(twice)
     };
     // A run may stand for each of many vehicles: to tell these apart takes memory, and few tables need it.
     if twice(false)?.is_none() {
         return Ok(());
     }
-    let Some(twice) = twice(true)? else { return Ok(()) };
+    let Some((number, others)) = twice(true)? else { return Ok(()) };
     let mut rows = Vec::new();
-    each(&mut |row, numbers| {
-        if rows.len() < 2 && *numbers == *twice {
+    each(&mut |row, run, apart| {
+        if rows.len() < 2 && *run == *number && apart.iter().map(whole).eq(others.iter().cloned()) {
             rows.push(row);
         }
     })?;
     let at: Vec<String> = rows.into_iter().map(|row| table.row_at(row)).collect();
     let named: Vec<String> = names
         .iter()
-        .zip(&twice)
+        .zip(iter::once(&number).chain(&others))
         .map(|(name, number)| format!("{} {number}", name.trim()))
         .collect();
     Err(table.refused(&format!(
@@ -333,14 +331,15 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(128))]
 
         /// Rows without a model, of a fleet or of anything else: the table is refused if one run stands twice, by all columns that tell runs
-        /// apart, and only then for that, with both of its rows. A column `run` names no runs if a cell of it is no whole number.
+        /// apart, and only then for that, with both of its rows, whatever the names of runs are and whatever else stands in a row.
         #[test]
         fn no_run_counts_twice(
             rows in prop::collection::vec((0..4_u8, 0..3_u8, 0..2_u8), 1..6),
             is_fleet in any::<bool>(),
             names in prop::sample::select(vec![["run", "vehicle", "flight"], ["Run", "VEHICLE", " flight"]]),
             apart in prop::sample::subsequence(vec![1_usize, 2], 0..=2),
-            odd in prop::option::weighted(0.2, prop::sample::select(vec!["0.5", "-1", "", "a"])),
+            odd in prop::option::weighted(0.2, prop::sample::select(vec!["0.5", "-77", "", "a"])),
+            (before_run, after) in prop::sample::select(vec![("", ""), ("-1", ""), ("115292150460684697", ""), ("case", ""), ("case 0", "b")]),
             (head, cell, has_model) in prop::sample::select(vec![
                 ("", "", false),
                 (",model", ",a", true),
@@ -358,7 +357,11 @@ mod tests {
                 apart.iter().fold(row[0].clone(), |line, place| format!("{line},{}", row[*place]))
             };
             let mut csv = format!("# a comment\nx,{}{head}\n", kept(names.map(str::to_owned)));
-            rows.iter().for_each(|row| csv += &format!("1,{}{cell}\n", kept(row.map(|number| number.to_string()))));
+            let run = |row: &[u8; 3]| format!("{before_run}{}{after}", row[0]);
+            for row in &rows {
+                let [_, vehicle, flight] = row.map(|number| number.to_string());
+                csv += &format!("1,{}{cell}\n", kept([run(row), vehicle, flight]));
+            }
             if let Some(odd) = odd {
                 csv += &format!("1,{}{cell}\n", kept([odd, "0", "0"].map(str::to_owned)));
             }
@@ -366,13 +369,13 @@ mod tests {
             let key = |row: &[u8; 3]| (row[0], apart.iter().map(|place| row[*place]).collect::<Vec<_>>());
             let before = |at: usize| rows[..at].iter().position(|row| key(row) == key(&rows[at]));
             let twice = (0..rows.len()).find_map(|at| Some([before(at)? + 3, at + 3]));
-            let twice = twice.filter(|_| !has_model && odd.is_none());
+            let twice = twice.filter(|_| !has_model);
             let refused = Fleet::first_flights(table).err().map(|error| error.to_string());
             let refused = refused.filter(|error| error.contains("a run counts once"));
             // Of a model and a run, judging tells.
             prop_assert_eq!(refused.is_some(), twice.is_some(), "{}", csv);
             if let (Some(refused), Some([one, other])) = (refused, twice) {
-                let said = format!("it.csv: line {one} and line {other} are both of {} {}", names[0], rows[other - 3][0]);
+                let said = format!("it.csv: line {one} and line {other} are both of {} {}", names[0], run(&rows[other - 3]));
                 prop_assert!(refused.starts_with(&said), "{}{}", csv, refused);
             }
         }

@@ -2,8 +2,10 @@
 
 use parquet::{
     basic::{Compression, Type as Physical},
+    column::reader::ColumnReader,
     errors::ParquetError,
     file::reader::{FileReader, RowGroupReader, SerializedFileReader},
+    schema::types::ColumnDescriptor,
 };
 use std::{collections::HashMap, fmt, fs::File, path::Path};
 
@@ -119,13 +121,31 @@ pub(super) fn cells(
     group: &dyn RowGroupReader,
     place: usize,
 ) -> Result<Cells, ForeignError> {
+    read_by(Cells::read, path, group, place)
+}
+
+/// The same as they are written, whole numbers with all digits.
+pub(super) fn texts(
+    path: &Path,
+    group: &dyn RowGroupReader,
+    place: usize,
+) -> Result<Vec<Option<String>>, ForeignError> {
+    read_by(Cells::read_texts, path, group, place)
+}
+
+fn read_by<T>(
+    read: fn(ColumnReader, &ColumnDescriptor, usize) -> Result<T, ParquetError>,
+    path: &Path,
+    group: &dyn RowGroupReader,
+    place: usize,
+) -> Result<T, ForeignError> {
     let chunk = group.metadata().column(place);
     if let Some(problem) = unread_codec(chunk.compression()) {
         return Err(ForeignError::of_column(path, &chunk.column_path().string(), &problem));
     }
     let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
     let cells = group.get_column_reader(place);
-    let cells = cells.and_then(|cells| Cells::read(cells, chunk.column_descr(), rows));
+    let cells = cells.and_then(|cells| read(cells, chunk.column_descr(), rows));
     cells.map_err(|error| unread(path, &error))
 }
 

@@ -77,6 +77,25 @@ impl Cells {
         })
     }
 
+    /// The texts of the cells, of whole numbers with all digits.
+    pub(super) fn read_texts(
+        reader: ColumnReader,
+        column: &ColumnDescriptor,
+        rows: usize,
+    ) -> Result<Vec<Option<String>>, ParquetError> {
+        match (reader, Meaning::of(column)) {
+            (ColumnReader::Int64ColumnReader(r), Meaning::Signed) => {
+                let cells = read(r, rows)?.into_iter();
+                Ok(cells.map(|cell| cell.map(|whole| whole.to_string())).collect())
+            }
+            (ColumnReader::Int64ColumnReader(r), Meaning::Unsigned) => {
+                let cells = read(r, rows)?.into_iter();
+                Ok(cells.map(|cell| cell.map(|x| x.cast_unsigned().to_string())).collect())
+            }
+            (reader, _) => Ok(Self::read(reader, column, rows)?.texts()),
+        }
+    }
+
     /// The numbers; none where a text is none.
     pub(super) fn numbers(self) -> Vec<Option<f64>> {
         match self {

@@ -1,19 +1,9 @@
 //! Runs that stand twice in a table, where its columns `model` and `run` say which run a row is.
 
-use parquet::{errors::ParquetError, file::reader::FileReader};
-use std::{
-    collections::BTreeMap,
-    path::{Path, PathBuf},
-};
+use std::{collections::BTreeMap, path::PathBuf};
 
-use super::{
-    ForeignError, ForeignTable, Form,
-    of_csv::{CsvText, broken, reader},
-    of_parquet::{cells, names, open, unread},
-    only_place,
-    written::number,
-};
-use crate::{column::Column, spans::Spans};
+use super::{ForeignError, ForeignTable, only_place};
+use crate::{column::Column, run_names::RunNames};
 
 /// A run that has two rows.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -24,7 +14,7 @@ use crate::{column::Column, spans::Spans};
 )]
 pub struct TwiceError {
     model: String,
-    run: u64,
+    run: String,
     /// Where the two rows are; the same file twice if they are in one.
     files: [PathBuf; 2],
 }
@@ -43,34 +33,24 @@ impl ForeignTable {
     /// # Errors
     /// A file cannot be read.
     pub(crate) fn twice(&self) -> Result<Option<TwiceError>, ForeignError> {
-        let mut seen: BTreeMap<String, Spans> = BTreeMap::new();
+        let Some(places) = own_places(&self.columns) else { return Ok(None) };
+        let names = places.map(|place| self.columns[place].clone());
+        let mut seen: BTreeMap<String, RunNames> = BTreeMap::new();
         let mut twice = None;
-        for (file, path) in self.files.iter().enumerate() {
-            let look = |model: &str, run: Option<f64>| {
-                let run = run.and_then(Column::run_named);
-                let Some(run) = run.filter(|_| !model.trim().is_empty()) else { return };
-                if !seen.contains_key(model) {
-                    seen.insert(model.to_owned(), Spans::default());
-                }
-                if let Some(Err(there)) = seen.get_mut(model).map(|seen| seen.add(run, file))
-                    && twice.is_none()
-                {
-                    let files = [self.files[there].clone(), path.clone()];
-                    twice = Some(TwiceError { model: model.to_owned(), run, files });
-                }
-            };
-            match &self.form {
-                Form::Parquet => look_parquet(path, look)?,
-                Form::Csv { separator, text } => {
-                    let form = (*separator, self.columns.len());
-                    look_csv(path, text, form, look)?;
-                }
+        self.scan_texts(&names, |file, cells| {
+            let [model, run] = cells else { return };
+            let Some(run) = RunNames::of(run).filter(|_| !model.trim().is_empty()) else { return };
+            if !seen.contains_key(model) {
+                seen.insert(model.clone(), RunNames::default());
             }
-            if twice.is_some() {
-                return Ok(twice);
+            if let Some(Err(there)) = seen.get_mut(model).map(|seen| seen.add(&run, file))
+                && twice.is_none()
+            {
+                let files = [there, file].map(|file| self.files[file].clone());
+                twice = Some(TwiceError { model: model.clone(), run: run.into_owned(), files });
             }
-        }
-        Ok(None)
+        })?;
+        Ok(twice)
     }
 }
 
@@ -78,42 +58,4 @@ impl ForeignTable {
 fn own_places(columns: &[String]) -> Option<[usize; 2]> {
     let [model, run, _] = Column::first();
     Some([only_place(columns, &model)?, only_place(columns, &run)?])
-}
-
-fn look_parquet(path: &Path, mut look: impl FnMut(&str, Option<f64>)) -> Result<(), ForeignError> {
-    let failed = |error: ParquetError| unread(path, &error);
-    let file = open(path).map_err(failed)?;
-    let names = names(&file);
-    let Some(places) = own_places(&names) else { return Ok(()) };
-    let schema = file.metadata().file_metadata().schema_descr_ptr();
-    if places.iter().any(|place| schema.column(*place).max_rep_level() > 0) {
-        return Ok(());
-    }
-    for group in 0..file.num_row_groups() {
-        let group = file.get_row_group(group).map_err(failed)?;
-        let cells = |place: usize| cells(path, &*group, place);
-        let (models, runs) = (cells(places[0])?.texts(), cells(places[1])?.numbers());
-        for (model, run) in models.iter().zip(runs) {
-            look(model.as_deref().unwrap_or_default(), run);
-        }
-    }
-    Ok(())
-}
-
-fn look_csv(
-    path: &Path,
-    text: &CsvText,
-    form: (u8, usize),
-    mut look: impl FnMut(&str, Option<f64>),
-) -> Result<(), ForeignError> {
-    let mut reader = reader(path, text, form)?;
-    let headers = reader.headers().map_err(|error| broken(path, &error))?;
-    let there: Vec<String> = headers.iter().map(str::to_owned).collect();
-    let Some(places) = own_places(&there) else { return Ok(()) };
-    let mut row = csv::StringRecord::new();
-    while reader.read_record(&mut row).map_err(|error| broken(path, &error))? {
-        let cell = |place: usize| row.get(places[place]).unwrap_or_default();
-        look(cell(0), number(cell(1)).flatten());
-    }
-    Ok(())
 }
