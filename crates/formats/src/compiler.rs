@@ -56,8 +56,13 @@ pub enum CompilerDoubt {
         /// The attribute.
         told: String,
     },
-    /// It computes stiffness or damping of an MJCF file from the masses when it loads it.
+    /// It computes stiffness or damping from the masses when it loads an MJCF file, for the joints and motors that have an attribute.
     Damped {
+        /// The attribute.
+        told: String,
+    },
+    /// The same for the motors of which the attribute gives the bias, where it takes a number of that for a damping ratio.
+    Biased {
         /// The attribute.
         told: String,
     },
@@ -113,8 +118,13 @@ impl fmt::Display for CompilerDoubt {
             ),
             Self::Damped { told } => write!(
                 f,
-                "the file has {told}, by which MuJoCo computes a damping, or a stiffness, from the masses when it loads a file. Each copy has that of its \
-                 drawn masses, and a model that is drawn after it was loaded keeps that of the file"
+                "the file has {told}: for each joint or motor that has this, by itself or by a default, MuJoCo computes the damping, or the \
+                 stiffness, from the masses {KEPT}"
+            ),
+            Self::Biased { told } => write!(
+                f,
+                "the file has {told}: for each motor that has this, by itself or by a default, and of which the second number is the gain with \
+                 the opposite sign, MuJoCo takes the third for a damping ratio and computes the damping from the masses {KEPT}"
             ),
             Self::Global => f.write_str(
                 "the file has coordinate=\"global\", which MuJoCo no longer loads: its places and axes are read here as those of \
@@ -136,6 +146,10 @@ impl fmt::Display for CompilerDoubt {
         }
     }
 }
+
+/// What becomes of a damping that MuJoCo computes.
+const KEPT: &str = "when it loads a file. Each copy has that of its drawn masses, and a model that is drawn after it was loaded keeps that of \
+    the file";
 
 /// The doubts about a file of this format.
 pub(crate) fn doubts(tree: &Tree<'_>, format: Format) -> Vec<CompilerDoubt> {
@@ -225,13 +239,34 @@ fn framed(tree: &Tree<'_>) -> Option<String> {
 }
 
 /// Of each attribute that makes stiffness or damping depend on masses the first that does, of a motor, of a joint or of their defaults.
-fn damped<'a>(tree: &'a Tree<'_>) -> impl Iterator<Item = CompilerDoubt> + 'a {
-    ["dampratio", "springdamper"].into_iter().filter_map(|name| {
-        let is_positive = |number: &str| number.parse().is_ok_and(|number: f64| number > 0.0);
-        let mut all = tree.nodes().filter_map(|node| node.attribute(name));
-        let told = all.find(|told| told.split_whitespace().any(is_positive))?;
-        Some(CompilerDoubt::Damped { told: written((name, told.trim())) })
-    })
+///
+/// What a motor takes from its defaults is not followed: another element may give the gain.
+fn damped(tree: &Tree<'_>) -> impl Iterator<Item = CompilerDoubt> {
+    let numbers = |told: &str| -> Vec<f64> {
+        // What is no number is refused by MuJoCo.
+        told.split_whitespace().map(|number| number.parse().unwrap_or_default()).collect()
+    };
+    let any_positive = move |told: &str| numbers(told).into_iter().any(|number| number > 0.0);
+    let is_ratio = move |node: Node<'_, '_>, told: &str| {
+        let [_, second, third, ..] = numbers(told)[..] else { return false };
+        let gain = node.attribute("gainprm").and_then(|told| numbers(told).first().copied());
+        // In a default, a motor may have another gain and another second number.
+        let in_default = node.ancestors().any(|around| around.name() == "default");
+        let may_be_gain = second != 0.0 && gain.is_none_or(|gain| gain + second == 0.0);
+        third > 0.0 && (in_default || may_be_gain)
+    };
+    let first = |name: &'static str, counts: &dyn Fn(Node<'_, '_>, &str) -> bool| {
+        let mut all = tree.nodes().filter_map(|node| Some((node, node.attribute(name)?)));
+        let (_, told) = all.find(|(node, told)| counts(*node, told))?;
+        Some(written((name, told.trim())))
+    };
+    let damped = ["dampratio", "springdamper"].map(|name| {
+        Some(CompilerDoubt::Damped { told: first(name, &|_, told| any_positive(told))? })
+    });
+    // A `<cylinder>` has its bias in an attribute of its own.
+    let biased = ["biasprm", "bias"]
+        .map(|name| Some(CompilerDoubt::Biased { told: first(name, &is_ratio)? }));
+    damped.into_iter().chain(biased).flatten()
 }
 
 /// An attribute of the compiler and its value.

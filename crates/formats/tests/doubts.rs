@@ -59,6 +59,16 @@ fn written(
     (text, first)
 }
 
+/// Some of the numbers of the bias of a motor, from the first on.
+fn bias() -> impl Strategy<Value = Vec<i32>> {
+    let second = select(vec![0, -1, -50, -40]);
+    (second, select(vec![0, -1, 1, 2]), 1..4_usize).prop_map(|(second, third, length)| {
+        let mut bias = vec![0, second, third];
+        bias.truncate(length);
+        bias
+    })
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(600))]
 
@@ -126,6 +136,66 @@ proptest! {
             Some(CompilerDoubt::Damped { told: format!("{name}=\"{}\"", told?.1) })
         }).collect();
         prop_assert_eq!(doubts("r.xml", &text), expected);
+    }
+
+    /// MuJoCo 4.0.0 takes the third number of a bias for a damping ratio where it is positive and the second is the gain with the opposite
+    /// sign, each taken from the motor, from its default, or, for the gain, 1; the damping that it makes of it is zero where the gain is.
+    #[test]
+    fn a_bias_that_is_a_damping_ratio_is_told(
+        of_default in prop::option::of(bias()), of_motor in prop::option::of(bias()),
+        gain_of_default in prop::option::of(select(vec![0, 1, 50])), gain_of_motor in prop::option::of(select(vec![0, 1, 50])),
+        is_named in any::<bool>(), is_cylinder in any::<bool>(),
+    ) {
+        let (element, bias_name) = if is_cylinder { ("cylinder", "bias") } else { ("general", "biasprm") };
+        let gain_name = if is_cylinder { "area" } else { "gainprm" };
+        let bias_text = |bias: &[i32]| bias.iter().map(i32::to_string).collect::<Vec<_>>().join(" ");
+        let attributes = |bias: &Option<Vec<i32>>, gain: Option<i32>| {
+            let bias = bias.as_ref().map(|bias| format!(" {bias_name}='{}'", bias_text(bias)));
+            let gain = gain.map(|gain| format!(" {gain_name}='{gain}'"));
+            bias.unwrap_or_default() + &gain.unwrap_or_default()
+        };
+        let class = if is_named { " class='c'" } else { "" };
+        let default = format!("<{element}{}/>", attributes(&of_default, gain_of_default));
+        let default = if is_named { format!("<default class='c'>{default}</default>") } else { default };
+        let motor = attributes(&of_motor, gain_of_motor);
+        let text = format!(
+            "<mujoco><default>{default}</default><worldbody><body name='a'><joint name='j'/>\
+             <inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/></body></worldbody>\
+             <actuator><{element}{class} joint='j'{motor}/></actuator></mujoco>"
+        );
+        let third = |i: usize| [&of_motor, &of_default].into_iter().flatten().find_map(|bias| bias.get(i).copied());
+        let gain = gain_of_motor.or(gain_of_default).unwrap_or(1);
+        let follows = third(2).is_some_and(|ratio| ratio > 0) && gain != 0 && third(1) == Some(-gain);
+        let told: Vec<_> = doubts("r.xml", &text);
+        if follows {
+            prop_assert_eq!(told.len(), 1, "{}", text);
+        }
+        // Nothing is told of a file in which no bias has a third number that is positive, nor of one in which the motor says all itself
+        // and takes no ratio.
+        let ratio = |bias: &Option<Vec<i32>>| bias.as_ref().is_some_and(|bias| bias.get(2).is_some_and(|ratio| *ratio > 0));
+        let says_all = !is_cylinder && of_default.is_none() && gain_of_motor.is_some();
+        if !(ratio(&of_default) || ratio(&of_motor)) || (says_all && !follows) {
+            prop_assert_eq!(&told, &[], "{}", text);
+        }
+        let biases: Vec<_> = [&of_default, &of_motor].into_iter().flatten().map(|bias| CompilerDoubt::Biased {
+            told: format!("{bias_name}=\"{}\"", bias_text(bias)),
+        }).collect();
+        prop_assert!(told.iter().all(|doubt| biases.contains(doubt)));
+    }
+
+    /// What stands in a default is told of those that take it alone: it is not known here whether any does.
+    #[test]
+    fn a_default_is_told_of_what_takes_it(ratio in 1..9_u8, name in select(vec!["dampratio", "springdamper", "biasprm"])) {
+        let value = match name {
+            "dampratio" => ratio.to_string(),
+            "springdamper" => format!("{ratio} 1"),
+            _ => format!("0 -5 {ratio}"),
+        };
+        let text = format!("<mujoco><default><default class='unused'><x {name}='{value}'/></default></default></mujoco>");
+        let told: Vec<String> = doubts("r.xml", &text).iter().map(ToString::to_string).collect();
+        let [told] = &told[..] else { panic!("{told:?}") };
+        prop_assert!(told.contains(&format!("{name}=\"{value}\": for each ")), "{}", told);
+        prop_assert!(told.contains("that has this, by itself or by a default"), "{}", told);
     }
 
     /// In SDF, populations and added masses of a fluid.
