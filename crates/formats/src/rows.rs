@@ -242,7 +242,7 @@ fn is_numbered(line: &str) -> bool {
 
 /// A line with those that belong to it: a quotation mark at the beginning of a cell may be closed in a later line. Where it is closed nowhere, the line alone.
 fn record<'a>(text: &'a str, line: &'a str) -> &'a str {
-    let is_even = |part: &str| part.matches('"').count() % 2 == 0;
+    let is_even = |part: &str| part.matches('"').count().is_multiple_of(2);
     let opens_cell = |before: &str| {
         let before = before.trim_end_matches(' ');
         before.is_empty() || before.ends_with(SEPARATORS)

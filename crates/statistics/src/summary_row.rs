@@ -184,7 +184,7 @@ const ADDED: [&str; 9] = [
 /// How many of the words stand before what is added to a sum, if something is.
 fn before_margin(words: &[&str]) -> Option<usize> {
     let is_added = |word: &&str| ADDED.iter().any(|added| word.starts_with(added));
-    let added = words.iter().rposition(|word| is_added(&word))?;
+    let added = words.iter().rposition(is_added)?;
     words[..added].iter().position(|word| WITH.contains(word) || is_number(word))
 }
 
