@@ -42,6 +42,8 @@ struct Column {
     heading: String,
     /// Whether a whole number says how deep a row is, and does not only count the rows.
     is_of_levels: bool,
+    /// Whether names may stand there: `Item` may hold `Cube.001`, and an `Item no.` may not.
+    may_be_names: bool,
 }
 
 #[derive(Debug)]
@@ -66,10 +68,12 @@ impl Levels {
             // Alone, a depth is a size.
             let is_of_levels = is_of(&LEVELS, &BESIDE_LEVELS) && all != ["depth"];
             let heading = shortened(heading);
+            let may_be_names = all == ["item"];
             (is_of_levels || is_of(&NUMBERS, &BESIDE_NUMBERS)).then_some(Column {
                 place,
                 heading,
                 is_of_levels,
+                may_be_names,
             })
         };
         let columns: Vec<Column> = headings.iter().enumerate().filter_map(column).collect();
@@ -87,7 +91,7 @@ impl Levels {
     pub(super) fn problem(&self) -> Option<(usize, &str, PartsProblem)> {
         self.columns.iter().enumerate().find_map(|(at, column)| {
             let cells: Vec<&str> = self.rows.iter().map(|row| row.cells[at].as_str()).collect();
-            let (row, above) = if let Some(paths) = paths(&cells) {
+            let (row, above) = if let Some(paths) = paths(&cells, column.may_be_names) {
                 self.by_numbers(&paths)
             } else if column.is_of_levels {
                 self.by_depths(&depths(&cells))
@@ -142,14 +146,19 @@ impl Levels {
     }
 }
 
-/// What stands between the dots of each cell, if some cell has two parts: `1.2`. Zeros at the end say nothing, as in `1.0`.
-fn paths<'a>(cells: &[&'a str]) -> Option<Vec<Option<Vec<&'a str>>>> {
+/// What stands between the dots of each cell, if some cell has two parts: `1.2`. Zeros at the end say nothing, as in `1.0`. Where names may stand, what has
+/// two letters between two dots is one: `Cube.001`, and not `A.1` or `2b.3`.
+fn paths<'a>(cells: &[&'a str], may_be_names: bool) -> Option<Vec<Option<Vec<&'a str>>>> {
     let path = |cell: &&'a str| {
         let mut path: Vec<&str> = cell.trim_matches('.').split('.').collect();
         while path.len() > 1 && path.last().is_some_and(|last| last.trim_matches('0').is_empty()) {
             path.pop();
         }
-        let is_part = |part: &&str| !part.is_empty() && part.chars().all(char::is_alphanumeric);
+        let is_name = |part: &str| part.chars().filter(|c| c.is_alphabetic()).count() > 1;
+        let is_part = |part: &&str| {
+            let is_word = !part.is_empty() && part.chars().all(char::is_alphanumeric);
+            is_word && !(may_be_names && is_name(part))
+        };
         // Longer texts are none, and would be searched for long.
         (cell.len() <= 200 && path.iter().all(is_part)).then_some(path)
     };
@@ -240,7 +249,7 @@ mod tests {
             order in any::<prop::sample::Index>(),
             twice: bool,
             heading in prop::sample::select(vec![
-                "WBS", "WBS code", "Item no.", "item_number", "Pos.", "Level", "Outline number", "Part no.", "Serial no.", "Depth", "Length",
+                "WBS", "WBS code", "Item", "Item no.", "item_number", "Pos.", "Level", "Outline number", "Part no.", "Serial no.", "Depth", "Length",
             ]),
             (before, after) in prop::sample::select(vec![("", ""), ("", "."), ("", ".0"), ("A.", ""), ("B2.", ".0.0")]),
         ) {
@@ -313,6 +322,12 @@ mod tests {
             ("Item no.", ["1", "2", "3", "4"], false),
             ("WBS", ["1.2", "1.2.3", "1.2.3", "1.2.4"], false),
             ("WBS", ["1.2", "", "NA", "1.2.4"], true),
+            ("WBS", ["SYS", "SYS.BUS", "SYS.BUS.TANK", "SYS.PAY"], true),
+            ("Item", ["Cube", "Cube.001", "Cube.002", "Cube.003"], false),
+            ("Item", ["Motor", "Motor.cover", "Tank", "Tank.1"], false),
+            ("Item", ["Wheel1", "Wheel1.2", "12", "13"], false),
+            ("Item", ["A", "A.1", "B", "B.2"], true),
+            ("Item", ["1", "1.1", "2", "2.1"], true),
         ] {
             let mut text = format!("{heading},name,mass,Cx,Cy,Cz,Ixx,Iyy,Izz\n");
             for (at, cell) in cells.iter().enumerate() {
