@@ -35,7 +35,7 @@ impl Unread {
         (!says_nothing).then(|| FileBodyError::Unread {
             heading: shortened(heading),
             value: shortened(cell),
-            why: self.because(terms),
+            why: self.because(cell, terms),
         })
     }
 
@@ -58,7 +58,8 @@ impl Unread {
     }
 
     /// Why such a column must not say it, and what to do.
-    fn because(self, terms: &TableTerms) -> &'static str {
+    fn because(self, cell: &str, terms: &TableTerms) -> &'static str {
+        let is_number = cell.parse::<f64>().is_ok();
         match self {
             Self::Count => {
                 "a row is one part, and must have mass, mass centre and inertia of all of them together, or stand as many times as \
@@ -72,6 +73,16 @@ impl Unread {
                 "units are those of a column, and must stand in its heading or in a row below the header: a cell in a row must be empty, \
                  or name the same units, each as a heading may name it, with no number, be it a factor or a count of parts"
             }
+            Self::Reference if is_number => match terms.point() {
+                InertiaPoint::MassCentre => {
+                    "the heading speaks of the point that an inertia is about, and the inertia of a row is that about its own mass centre: it must be that, \
+                     in columns ixx, iyy and izz, and this column must be left out"
+                }
+                InertiaPoint::Origin => {
+                    "the heading speaks of the point that an inertia is about, and in a table with first moments, the inertia of a row is that about the \
+                     origin: it must be that, in columns ixx, iyy and izz, and this column must be left out"
+                }
+            },
             Self::Reference => match terms.point() {
                 InertiaPoint::MassCentre => {
                     "the inertia of a row is that about its own mass centre: the column must be empty, or say so, as \"cg\" or \
@@ -164,6 +175,31 @@ impl Unread {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A column of an inertia about another point holds numbers, and a point is none.
+    #[test]
+    fn an_inertia_about_another_point_is_told_so() {
+        for (heading, kind) in [
+            ("Ixx (origin)", Unread::Reference),
+            ("Iyy at origin", Unread::Reference),
+            ("MOI about", Unread::Reference),
+        ] {
+            assert_eq!(Unread::of(heading), Some(kind), "{heading}");
+            for (cell, expected) in [
+                ("10", "this column must be left out"),
+                ("-1e-3", "this column must be left out"),
+                ("datum", "the column must be empty, or say so"),
+            ] {
+                let problem = kind
+                    .problem(heading, cell, &TableTerms::default())
+                    .map(|found| found.to_string());
+                assert!(
+                    problem.as_ref().is_some_and(|said| said.contains(expected)),
+                    "{heading} {cell} {problem:?}"
+                );
+            }
+        }
+    }
 
     /// Words that may be numbers were none in columns of angles and of growth.
     #[test]
