@@ -96,8 +96,21 @@ const STATISTICS: [&str; 63] = [
     "deviazione",
 ];
 
+/// What a value may be off, and what it should be. A model may be called so, of which all rows are then.
+const ASIDE: [&str; 8] = [
+    "uncertainty",
+    "uncertainties",
+    "tolerance",
+    "tolerances",
+    "cov",
+    "nominal",
+    "requirement",
+    "requirements",
+];
+
 /// What stands beside it: of a part that is called otherwise, a name has other words.
-const BESIDE: [&str; 64] = [
+const BESIDE: [&str; 65] = [
+    "%",
     // What is estimated, expected at most and not to be exceeded.
     "cbe",
     "mev",
@@ -218,8 +231,8 @@ const FUNCTIONS: [&str; 5] = ["stdev", "stddev", "var", "percentile", "quartile"
 
 /// Tells among the names in a column, from the first row on, those of rows that sum up others.
 ///
-/// A share without a word of a statistic, such as `95%` or `P99.73`, is one of them where the first name of the column is no share: a column of
-/// shares says something else.
+/// A share without a word of a statistic, such as `95%` or `P99.73`, is one of them where the first name of the column is none: a column of
+/// shares says something else. The same holds for words as `Uncertainty` and `Nominal`.
 ///
 /// ```
 /// use gyradius_statistics::SummaryNames;
@@ -230,7 +243,7 @@ const FUNCTIONS: [&str; 5] = ["stdev", "stddev", "var", "percentile", "quartile"
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct SummaryNames {
-    /// Whether the first name is a share.
+    /// Whether the first name is a share or another that all rows may have.
     of_shares: Option<bool>,
 }
 
@@ -252,7 +265,7 @@ impl SummaryNames {
 enum Kind {
     /// That of a row that sums up others.
     Summary,
-    /// A share, which may be a percentile.
+    /// A share, which may be a percentile, or a word that may be the name of all rows.
     Share,
     /// Any other.
     Other,
@@ -273,6 +286,7 @@ impl Kind {
         }
         let words = words(&plain);
         let is_key = |word: &str| is_of_sum(word) || STATISTICS.contains(&word);
+        let is_aside = |word: &&str| ASIDE.contains(word);
         let is_share = |at: &usize| {
             let (number, next) = (words[*at], words.get(at + 1));
             let is_of = |some: &[&str]| next.is_some_and(|next| some.contains(next));
@@ -293,7 +307,7 @@ impl Kind {
                 Ordering::Equal => true,
                 Ordering::Greater => at == share + 1 && *word == "%",
             };
-            let is_plain = is_key(word) || BESIDE.contains(word) || is_end;
+            let is_plain = is_key(word) || is_aside(word) || BESIDE.contains(word) || is_end;
             is_plain || is_number(word) && is_counted || shares.iter().any(is_of)
         };
         if !words.iter().enumerate().all(is_plain) {
@@ -304,7 +318,7 @@ impl Kind {
         if deviation || words.iter().any(|word| is_key(word)) {
             return Self::Summary;
         }
-        if shares.is_empty() { Self::Other } else { Self::Share }
+        if shares.is_empty() && !words.iter().any(is_aside) { Self::Other } else { Self::Share }
     }
 }
 

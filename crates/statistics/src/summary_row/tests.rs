@@ -82,6 +82,12 @@ fn names_of_sums_are_told_from_those_of_parts() {
         "95% CI",
         "Lower 95%",
         "95 percent of runs",
+        "COV %",
+        "COV (%)",
+        "Uncertainty",
+        "Tolerance",
+        "Nominal value",
+        "REQUIREMENT",
     ] {
         assert_eq!(Kind::of(name), Kind::Share, "{name}");
     }
@@ -115,6 +121,10 @@ fn names_of_sums_are_told_from_those_of_parts() {
         "50 runs",
         "max s",
         "upper limit",
+        "cover",
+        "tolerance ring",
+        "nominal tank",
+        "Delta",
     ] {
         assert_eq!(Kind::of(name), Kind::Other, "{name}");
     }
@@ -172,6 +182,10 @@ fn a_share_is_a_summary_below_other_names_only() {
         names.iter().map(|name| column.sums_up(name)).collect::<Vec<_>>()
     };
     assert_eq!(found(&["0", "1", "5%", "95%"]), [false, false, true, true]);
+    for word in ASIDE {
+        assert_eq!(found(&["a", "b", word, "Mean"]), [false, false, true, true], "{word}");
+        assert_eq!(found(&[word, word, "Mean"]), [false, false, true], "{word}");
+    }
     assert_eq!(found(&["5%", "95%", "Mean"]), [false, false, true]);
 }
 
