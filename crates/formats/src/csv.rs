@@ -9,6 +9,7 @@ use crate::{
     error::Refusal,
     gap::{GapKind, Gaps},
     products_comment::stated_products,
+    rows::is_blank,
     table_header::{FIELDS, MASS, NAME, PRODUCTS, find_header},
     text::Text,
 };
@@ -21,6 +22,7 @@ pub(crate) fn read(text: &Text, default: Products) -> Result<(Vec<FileBody>, Gap
 
     let mut bodies = Vec::new();
     let mut things = BTreeSet::new();
+    let mut have_cells = BTreeSet::new();
     let mut summaries = [SummaryNames::default(), SummaryNames::default()];
     while let Some(row) = rows.next() {
         let row = row.map_err(|error| error.of(text))?;
@@ -43,6 +45,9 @@ pub(crate) fn read(text: &Text, default: Products) -> Result<(Vec<FileBody>, Gap
         let reading =
             reading.map(|reading| reading.in_units(header.mass.si(), header.inertia.si()));
         things.extend(header.things(text, &row));
+        let cells = row.iter().enumerate();
+        let cells = cells.filter(|(_, field)| !is_blank(field.of(text.as_str()).trim()));
+        have_cells.extend(cells.map(|(at, _)| at));
         // In the column of names, or the first one, as of an index.
         let first = row.first().map(|field| field.of(text.as_str()));
         let labels = [cell(NAME).map(|(name, _)| name), first];
@@ -59,7 +64,7 @@ pub(crate) fn read(text: &Text, default: Products) -> Result<(Vec<FileBody>, Gap
     let has_masses = header.columns[MASS].is_some();
     for (kind, unread) in [
         (GapKind::Things, things.collect()),
-        (GapKind::Columns { has_masses }, header.unread_columns(text)),
+        (GapKind::Columns { has_masses }, header.unread_columns(text, &have_cells)),
     ] {
         if !unread.is_empty() {
             gaps.add_keys(kind, line, unread);

@@ -1,5 +1,7 @@
 //! The header of a table of bodies: which columns hold the seven numbers, and in what units.
 
+use std::collections::BTreeSet;
+
 use crate::{
     FileBodyError, FileProblem,
     body::{entry_of, lower_of, shortened},
@@ -87,17 +89,21 @@ pub(crate) struct Header {
 }
 
 impl Header {
-    /// The headings of columns that no check reads, each once.
-    pub(crate) fn unread_columns(&self, text: &Text) -> Vec<String> {
+    /// The headings of columns that no check reads, each once, and the numbers of those that have cells, as the ones given, and no heading.
+    pub(crate) fn unread_columns(&self, text: &Text, have_cells: &BTreeSet<usize>) -> Vec<String> {
         let is_read = |at: usize| {
             self.columns.contains(&Some(at)) || self.unread.iter().any(|(other, _)| *other == at)
         };
         let others = self.row.iter().enumerate().filter(|(at, _)| !is_read(*at));
         let mut found: Vec<String> = Vec::new();
-        for (_, field) in others {
+        for (at, field) in others {
             let heading = field.of(text.as_str()).trim().replace("\"\"", "\"");
-            if !heading.is_empty() && !found.contains(&heading) {
-                found.push(heading);
+            let named = match heading.as_str() {
+                "" if have_cells.contains(&at) => format!("column {} (no heading)", at + 1),
+                _ => heading,
+            };
+            if !named.is_empty() && !found.contains(&named) {
+                found.push(named);
             }
         }
         found

@@ -230,6 +230,39 @@ proptest! {
     }
 }
 
+proptest! {
+    /// A column without a heading, as below a header of two rows, is named by its number if it has cells.
+    #[test]
+    fn columns_without_headings_are_named_if_they_have_cells(
+        places in prop::sample::subsequence((0..6_usize).collect::<Vec<_>>(), 1..=3),
+        filled in 0..8_u8,
+        title in prop::sample::select(vec!["", ",Mass (kg),Moments of inertia,,,\n"]),
+    ) {
+        let mut columns = [("", ""); 6];
+        let mut known = [("ixx", "1"), ("iyy", "1"), ("izz", "1")].into_iter();
+        let mut expected = Vec::new();
+        for (at, column) in columns.iter_mut().enumerate() {
+            *column = match places.iter().position(|place| *place == at) {
+                None => known.next().unwrap_or(("note", "x")),
+                Some(which) if filled >> which & 1 == 1 => {
+                    expected.push(format!("column {} (no heading)", at + 1));
+                    ("", "2")
+                }
+                Some(_) => ("", ""),
+            };
+            if column.0 == "note" && !expected.contains(&"note".to_owned()) {
+                expected.push("note".to_owned());
+            }
+        }
+        let row = |of: fn(&(&'static str, &'static str)) -> &'static str| columns.iter().map(of).collect::<Vec<_>>().join(",");
+        let text = format!("{title}{}\n{}\n", row(|column| column.0), row(|column| column.1));
+        let file = InertiaFile::parse(Path::new("t.csv"), text.clone().into_bytes(), Products::default()).unwrap();
+        let found: Vec<&str> = file.gaps().iter().flat_map(|gap| gap.keys()).map(String::as_str).collect();
+        prop_assert_eq!(found, expected, "{}", text);
+        prop_assert!(file.gaps().iter().all(|gap| gap.to_string().contains("no column of masses")));
+    }
+}
+
 /// A table of a series has the units that were made in its rows.
 #[test]
 fn units_of_a_series_are_no_units_of_inertia() {
