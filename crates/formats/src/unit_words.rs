@@ -225,6 +225,11 @@ pub(crate) fn is_name(part: &str) -> bool {
     ["n", "mn", "cn", "dan"].contains(&part)
 }
 
+/// Whether a word in small letters says that units are meant, in any language: `einheit`.
+pub(crate) fn is_for_units(word: &str) -> bool {
+    whole(word) == Some(Kind::Units)
+}
+
 /// Every symbol of a kind.
 fn symbols(kind: Kind) -> impl Iterator<Item = &'static str> {
     let read: &[(&str, f64)] = match kind {

@@ -263,6 +263,54 @@ proptest! {
     }
 }
 
+/// Whatever a column of units, of factors or of points is called, a cell that changes the row is refused, and one that says the same is read.
+#[test]
+fn cells_count_under_any_heading_of_units_and_points() {
+    for (headings, same, other) in [
+        (
+            &["Einheit", "Unité", "Unidad", "CAD units", "Model unit"][..],
+            &["", "kg m2", "kg"][..],
+            &["g", "mmgs", "g mm2"][..],
+        ),
+        (
+            &["Inertia factor", "unit factor", "Scale factor", "Ixx factor"],
+            &["", "1", "1.0"],
+            &["1e-6", "2", "0.001"],
+        ),
+        (
+            &[
+                "Inertia given at",
+                "Inertia point",
+                "MOI @",
+                "Inertia around",
+                "MOI referred to",
+                "Inertia CSYS",
+            ],
+            &["", "cg", "mass centre", "own CG"],
+            &["origin", "vehicle CG", "point A"],
+        ),
+        (&["Safety factor", "Mount point", "Model", "Coordinates"], &["", "g", "origin", "2"], &[]),
+    ] {
+        for heading in headings {
+            for (cell, is_same) in
+                same.iter().map(|c| (c, true)).chain(other.iter().map(|c| (c, false)))
+            {
+                let text =
+                    format!("name,mass,Cx,Cy,Cz,ixx,iyy,izz,{heading}\na,2,0,0,0,1,1,1,{cell}\n");
+                let file = InertiaFile::parse(
+                    Path::new("t.csv"),
+                    text.clone().into_bytes(),
+                    Products::default(),
+                )
+                .unwrap();
+                assert_eq!(file.bodies()[0].inertia().is_ok(), is_same, "{text}");
+                let list = PartsTable::read(text.as_bytes(), None);
+                assert_eq!(list.is_ok(), is_same, "{text}{list:?}");
+            }
+        }
+    }
+}
+
 /// A table of a series has the units that were made in its rows.
 #[test]
 fn units_of_a_series_are_no_units_of_inertia() {

@@ -3,6 +3,7 @@
 use crate::{
     spread::{parted, words},
     table_terms::dimension_of,
+    unit_words::is_for_units,
     units::Dimension,
 };
 
@@ -33,8 +34,8 @@ const INERTIA: &str = "inertia";
 /// Words for the point or the frame of an inertia, and what may stand beside them.
 const REFERENCES: [&str; 9] =
     ["about", "at", "reference", "ref", "frame", "origin", "wrt", "relative", "respect"];
-const BESIDE_REFERENCES: [&str; 10] =
-    ["of", "taken", "the", "point", "and", "axis", "axes", "matrix", "with", "to"];
+const BESIDE_REFERENCES: [&str; 11] =
+    ["of", "taken", "given", "the", "point", "and", "axis", "axes", "matrix", "with", "to"];
 
 /// Words for a number of parts, with any words beside them but those of something else that is told of parts or counted.
 const AMOUNTS: [&str; 11] = [
@@ -104,13 +105,16 @@ const COUNTED: [&str; 27] = [
 /// Behind one of them, the unit of the amount: `quantity unit`.
 const UNITS: [&str; 3] = ["unit", "units", "uom"];
 
-const KINDS: [Words; 11] = [
+const KINDS: [Words; 14] = [
     // Before counts: `units` alone are those of the row.
     (
         Unread::Unit,
         &[&UNITS],
         &["of", "for", "the", "and", "in", "used", "system", "measure", "measurement"],
     ),
+    (Unread::Unit, &[&["cad", "model", "file"], &UNITS], &["of", "the"]),
+    // A factor would make other units of those of the columns.
+    (Unread::Unit, &[&[INERTIA, "mass", "unit", "units", "scale"], &["factor"]], &["to", "si"]),
     // A `part number` names a part, and a `number of parts` counts it.
     (Unread::Count, &[&["number", "num", "nos", "occurrences", "replicas"]], &[]),
     (
@@ -253,6 +257,11 @@ const KINDS: [Words; 11] = [
         ],
     ),
     (Unread::Reference, &[&[INERTIA], &REFERENCES], &BESIDE_REFERENCES),
+    (
+        Unread::Reference,
+        &[&[INERTIA], &["point", "around", "referred", "csys"]],
+        &BESIDE_REFERENCES,
+    ),
     (Unread::Reference, &[&["about"]], &["taken", "the", "point"]),
     (Unread::Sign, &[&["sign", "signs"]], &["of", "the", INERTIA, "convention"]),
     (Unread::Sign, &[&[INERTIA], &["sign", "signs", "convention", "conv"]], &["of", "the"]),
@@ -275,6 +284,7 @@ impl Unread {
             ("u.o.m", "uom"),
             ("u/m", "uom"),
             ("w.r.t", "wrt"),
+            ("@", " at "),
             ("'", ""),
             ("’", ""),
             ("кол-во", "количество"),
@@ -289,6 +299,8 @@ impl Unread {
         }
         let one = |word| match dimension_of(word) {
             Some(Dimension::Inertia) => INERTIA,
+            // In any language.
+            None if is_for_units(word) && !UNITS.contains(&word) => "unit",
             Some(Dimension::Mass | Dimension::Length | Dimension::FirstMoment) | None => word,
         };
         let all: Vec<&str> = words(&plain).filter(|word| !word.is_empty()).map(one).collect();
