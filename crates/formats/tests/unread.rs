@@ -1,7 +1,7 @@
 //! Columns that say that the inertia of a row is another one: whoever reads the table refuses them, or reads the same numbers.
 
 use gyradius_formats::{
-    FileBodyError, GapKind, InertiaFile, PartsTable, Products, TenCentre, TenTable,
+    FileBodyError, Gap, GapKind, InertiaFile, PartsTable, Products, TenCentre, TenTable,
 };
 use proptest::{prelude::*, sample::select};
 use std::path::Path;
@@ -236,7 +236,7 @@ proptest! {
     fn columns_without_headings_are_named_if_they_have_cells(
         places in prop::sample::subsequence((0..6_usize).collect::<Vec<_>>(), 1..=3),
         filled in 0..8_u8,
-        title in prop::sample::select(vec!["", ",Mass (kg),Moments of inertia,,,\n"]),
+        title in select(vec!["", ",Mass (kg),Moments of inertia,,,\n"]),
     ) {
         let mut columns = [("", ""); 6];
         let mut known = [("ixx", "1"), ("iyy", "1"), ("izz", "1")].into_iter();
@@ -257,7 +257,7 @@ proptest! {
         let row = |of: fn(&(&'static str, &'static str)) -> &'static str| columns.iter().map(of).collect::<Vec<_>>().join(",");
         let text = format!("{title}{}\n{}\n", row(|column| column.0), row(|column| column.1));
         let file = InertiaFile::parse(Path::new("t.csv"), text.clone().into_bytes(), Products::default()).unwrap();
-        let found: Vec<&str> = file.gaps().iter().flat_map(|gap| gap.keys()).map(String::as_str).collect();
+        let found: Vec<&str> = file.gaps().iter().flat_map(Gap::keys).map(String::as_str).collect();
         prop_assert_eq!(found, expected, "{}", text);
         prop_assert!(file.gaps().iter().all(|gap| gap.to_string().contains("no column of masses")));
     }
