@@ -125,6 +125,70 @@ proptest! {
         }
     }
 
+    /// Where all other rows have whole numbers in the first column, a row with a text there is no run, whatever it says and wherever it stands below
+    /// the first row; a first run may have a name, and so may runs among fractions, among other names, and by a number and a letter.
+    #[test]
+    fn a_text_among_numbers_of_rows_is_no_run(
+        numbers in prop::collection::btree_set(-50..50_i32, 3..30),
+        shuffled in any::<bool>(),
+        word in prop::sample::select(vec!["Mean (x)", "Average of 21", "mean (deg/s)", "N=30", "CV", "Q1", "Worst", "summary", "平均", "Среднее", "---"]),
+        place in any::<prop::sample::Index>(),
+        heading in prop::sample::select(vec!["id", "sample", "case", ""]),
+    ) {
+        let mut labels: Vec<String> = numbers.iter().map(i32::to_string).collect();
+        if shuffled {
+            labels.reverse();
+        }
+        let count = labels.len() as u64;
+        let table = |labels: &[String]| {
+            let rows: String = labels.iter().map(|label| format!("{label},0.5\n")).collect();
+            format!("{heading},x\n{rows}")
+        };
+        let with = |place: usize, label: &str| {
+            let mut labels = labels.clone();
+            labels.insert(place, label.to_owned());
+            labels
+        };
+        let place = 1 + place.index(labels.len());
+        let refused = judged(&table(&with(place, word))).unwrap_err();
+        let said = format!("it: line {}, column {heading:?}: ", place + 2);
+        prop_assert!(refused.starts_with(&said) && refused.contains(&format!("{word:?}")), "{}", refused);
+        let all_names = with(place, "run a").into_iter().flat_map(|label| [label, "run b".to_owned()]).collect();
+        for valid in [with(0, "nominal"), with(place, "2a"), [with(place, "nominal"), vec!["0.5".to_owned()]].concat(), all_names] {
+            prop_assert_eq!(judged(&table(&valid)), Ok([valid.len() as u64, 0]), "{:?} {}", valid, count);
+        }
+    }
+
+    /// A statistic of a column, in brackets or behind `of`, sums up others, and a case with other words does not.
+    #[test]
+    fn a_statistic_of_a_column_is_no_run(
+        word in prop::sample::select(vec!["Mean", "MEAN", "average", "Std. dev."]),
+        form in prop::sample::select(vec![" (?)", "(?)", " [?]", " of ?"]),
+        of in prop::sample::select(vec!["x", "X", "rate", "deg/s", "rate [deg/s]"]),
+    ) {
+        let table = |name: &str| format!("case,x,rate [deg/s]\na,0,1\nb,1,1\n{name},0.5,1\n");
+        let said = judged(&table(&format!("{word}{}", form.replace('?', of)))).unwrap_err();
+        prop_assert!(said.contains("one that sums up others is no run"), "{}", said);
+        for other in ["hot", "night", "y"] {
+            let name = format!("{word}{}", form.replace('?', other));
+            prop_assert_eq!(judged(&table(&name)), Ok([3, 0]), "{}", name);
+        }
+    }
+
+    /// A first run whose only number is 1 has a name above whole numbers, and a row of units has none.
+    #[test]
+    fn a_named_first_run_of_flags_is_a_run(
+        flags in prop::collection::vec(any::<bool>(), 2..20),
+        name in prop::sample::select(vec!["baseline", "nominal", "as built", "reference-1", "as_flown"]),
+        unit in prop::sample::select(vec!["s", "deg", "[-]", "kg*m^2", "rad/s", "%"]),
+    ) {
+        let rows: String = flags.iter().enumerate().map(|(at, x)| format!("{at},{}\n", u8::from(*x))).collect();
+        let runs = flags.len() as u64 + 1;
+        prop_assert_eq!(judged(&format!("case,x\n{name},1\n{rows}")), Ok([runs, 0]));
+        let refused = judged(&format!("case,x\n{unit},1\n{rows}")).unwrap_err();
+        prop_assert!(refused.contains("none but 1, which may be a unit"), "{}", refused);
+    }
+
     /// A row of units has no number, though `-` may stand for one that is missing, and `1` for a unit: it stands above numbers, and a run that failed
     /// has a name among names, or a number.
     #[test]

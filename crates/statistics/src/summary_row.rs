@@ -219,7 +219,8 @@ const COUNTED: [&str; 13] = [
 ];
 
 /// What a number may stand behind.
-const COUNTING: [&str; 5] = ["percentile", "quantile", "quartile", "confidence", "n"];
+const COUNTING: [&str; 7] =
+    ["percentile", "quantile", "quartile", "confidence", "n", "of", "count"];
 
 /// What a number stands before that is a share, and one that may be a percentile.
 const SHARES: [&str; 3] = ["%", "percent", "pct"];

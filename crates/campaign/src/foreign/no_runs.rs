@@ -43,7 +43,12 @@ enum NoRun {
     )]
     NoNumber { cell: String },
     #[error(
-        "{cell:?} stands above numbers, and no cell of its row is a number. A row of units or of more names is no run and must be left out of the \
+        "{cell:?} stands where the other rows have whole numbers, as a row that sums up others does: a row that is no run must be left out of the \
+         table, and a run must have a whole number there, too"
+    )]
+    Text { cell: String },
+    #[error(
+        "{cell:?} stands above numbers, and no cell of its row is a number, or none but 1, which may be a unit. A row of units or of more names is no run and must be left out of the \
          table; a run without a number must have NaN there"
     )]
     Units { cell: String },
@@ -58,6 +63,51 @@ struct Seen {
     /// Whether one is the number of a run, and the first that is none.
     is_numbered: bool,
     without: Option<(PathBuf, String, String)>,
+    numbers: Numbers,
+}
+
+/// What the cells of a column without the name `run` are that may number its rows.
+#[derive(Debug, Default)]
+struct Numbers {
+    cells: u64,
+    wholes: u64,
+    texts: u64,
+    last: Option<f64>,
+    /// Whether a number is no whole one, or not above the one before it.
+    is_mixed: bool,
+    is_unordered: bool,
+    /// The first text below the first row that begins with no digit.
+    text: Option<(PathBuf, String, String)>,
+}
+
+impl Numbers {
+    fn add(&mut self, cell: &str, at: impl Fn() -> (PathBuf, String)) {
+        let is_first = self.cells == 0;
+        self.cells += 1;
+        match number(cell) {
+            Some(Some(number)) => {
+                self.wholes += 1;
+                self.is_mixed |= number.fract() != 0.0;
+                self.is_unordered |= self.last.replace(number).is_some_and(|last| last >= number);
+            }
+            Some(None) => {}
+            None => {
+                self.texts += 1;
+                // The first run may be a nominal one, and `2a` may follow 2.
+                let may_name = is_first || cell.starts_with(|c: char| c.is_ascii_digit());
+                if self.text.is_none() && !may_name {
+                    let (path, at) = at();
+                    self.text = Some((path, at, cell.to_owned()));
+                }
+            }
+        }
+    }
+
+    /// The text, if whole numbers are all else in most rows, and in their order unless the column is the first to name rows.
+    fn text(self, is_first: bool) -> Option<(PathBuf, String, String)> {
+        let are_numbered = !self.is_mixed && self.wholes > self.texts;
+        self.text.filter(|_| are_numbered && (is_first || !self.is_unordered))
+    }
 }
 
 /// A column that is looked at.
@@ -66,6 +116,8 @@ struct Looked {
     place: usize,
     name: String,
     is_run: bool,
+    /// Whether it is the first that may name rows.
+    is_first: bool,
     seen: Seen,
 }
 
@@ -74,26 +126,37 @@ impl Looked {
     fn of(columns: &[String], labels: Vec<usize>) -> Vec<Self> {
         let [_, run, _] = Column::first();
         let run = place_of(columns, &run);
+        let first = labels.first().copied();
         let mut places: Vec<usize> = run.into_iter().chain(labels).collect();
         places.sort_unstable();
         places.dedup();
         let looked = |place: usize| {
             let (name, seen) = (columns[place].clone(), Seen::default());
-            Self { place, name, is_run: run == Some(place), seen }
+            Self { place, name, is_run: run == Some(place), is_first: first == Some(place), seen }
         };
         places.into_iter().map(looked).collect()
     }
 
     /// The next cell, as it is written, and where it is; ends with why its row is no run.
-    fn add(&mut self, path: &Path, at: impl Fn() -> String, cell: &str) -> ControlFlow<NoRunError> {
+    fn add(
+        &mut self,
+        path: &Path,
+        at: impl Fn() -> String,
+        cell: &str,
+        columns: &[String],
+    ) -> ControlFlow<NoRunError> {
         let cell = cell.trim();
         let found = number(cell);
         // An empty cell is no name, and of numbers, of which there may be many, the first says as much as all.
         let is_first = found != Some(None) && !mem::replace(&mut self.seen.is_begun, true);
-        if (found.is_none() || is_first) && self.seen.names.sums_up(cell) && found.is_none() {
+        let may_name = found.is_none() || is_first;
+        if may_name && self.seen.names.sums_up(of_column(cell, columns)) && found.is_none() {
             let (path, at, column) = (path.to_owned(), at(), self.name.clone());
             let problem = NoRun::Summary { word: cell.to_owned() };
             return ControlFlow::Break(NoRunError { path, at, column, problem });
+        }
+        if !self.is_run {
+            self.seen.numbers.add(cell, || (path.to_owned(), at()));
         }
         self.add_number(path, at, found.flatten(), cell);
         ControlFlow::Continue(())
@@ -113,7 +176,11 @@ impl Looked {
 
     /// What is wrong after all cells.
     fn end(self) -> Option<NoRunError> {
-        let Seen { is_numbered, without, .. } = self.seen;
+        let Seen { is_numbered, without, numbers, .. } = self.seen;
+        if let Some((path, at, cell)) = numbers.text(self.is_first) {
+            let problem = NoRun::Text { cell };
+            return Some(NoRunError { path, at, column: self.name, problem });
+        }
         let (path, at, cell) = without.filter(|_| is_numbered)?;
         Some(NoRunError { path, at, column: self.name, problem: NoRun::NoNumber { cell } })
     }
@@ -132,9 +199,9 @@ impl ForeignTable {
         let mut looked = Looked::of(&self.columns, self.labels()?);
         for path in &self.files {
             let found = match &self.form {
-                Form::Parquet => look_parquet(path, &mut looked)?,
+                Form::Parquet => look_parquet(path, &self.columns, &mut looked)?,
                 Form::Csv { separator, text } => {
-                    look_csv(path, text, (*separator, self.columns.len()), &mut looked)?
+                    look_csv(path, text, (*separator, &self.columns), &mut looked)?
                 }
             };
             if let ControlFlow::Break(found) = found {
@@ -145,12 +212,35 @@ impl ForeignTable {
     }
 }
 
+/// A statistic without the column that it is of, `Mean` of `Mean (x)` and of `mean of x [deg]`; any other name as it is.
+fn of_column<'a>(cell: &'a str, columns: &[String]) -> &'a str {
+    let Some((word, of)) = cell.split_once(" of ").or_else(|| cell.split_once(['(', '['])) else {
+        return cell;
+    };
+    let bare = |name: &str| name.trim_matches(|c: char| " ()[]".contains(c)).to_lowercase();
+    let parts = |name: &str| -> Vec<String> { name.split(['(', '[']).map(bare).collect() };
+    let of = bare(of);
+    let is_column = |name: &String| bare(name) == of || parts(name).contains(&of);
+    if !of.is_empty() && columns.iter().any(is_column) { word.trim() } else { cell }
+}
+
 /// The texts of the first row of a table, of which no cell is a number, where all cells below them are numbers.
 #[derive(Debug, Default)]
 struct AboveNumbers {
     at: String,
-    /// Place and text, and whether a number stands below.
-    texts: Vec<(usize, String, bool)>,
+    /// Whether a cell is 1, which may be a unit.
+    has_one: bool,
+    texts: Vec<AboveNumber>,
+}
+
+/// A text of the first row.
+#[derive(Debug)]
+struct AboveNumber {
+    place: usize,
+    cell: String,
+    /// Whether a number stands below, and whether one that is not whole does.
+    has_number: bool,
+    has_fraction: bool,
 }
 
 impl AboveNumbers {
@@ -163,36 +253,52 @@ impl AboveNumbers {
             return Self::default();
         }
         let texts = row.iter().enumerate().filter(|(_, cell)| number(cell).is_none());
-        Self { at, texts: texts.map(|(place, cell)| (place, cell.to_owned(), false)).collect() }
+        let text = |(place, cell): (usize, &str)| AboveNumber {
+            place,
+            cell: cell.to_owned(),
+            has_number: false,
+            has_fraction: false,
+        };
+        Self { at, has_one: row.iter().any(|cell| cell == "1"), texts: texts.map(text).collect() }
     }
 
     fn add(&mut self, row: &csv::StringRecord) {
-        self.texts.retain_mut(|(place, _, has_number)| {
-            let cell = number(row.get(*place).unwrap_or_default());
-            *has_number |= cell.flatten().is_some();
+        self.texts.retain_mut(|text| {
+            let cell = number(row.get(text.place).unwrap_or_default());
+            text.has_number |= cell.flatten().is_some();
+            text.has_fraction |= cell.flatten().is_some_and(|number| number.fract() != 0.0);
             cell.is_some()
         });
     }
 
     fn end(self, path: &Path, reader: &mut csv::Reader<impl Read>) -> Option<NoRunError> {
-        let (place, cell, _) = self.texts.into_iter().find(|(_, _, has_number)| *has_number)?;
-        let column = reader.headers().ok()?.get(place).unwrap_or_default().to_owned();
-        Some(NoRunError {
-            path: path.to_owned(),
-            at: self.at,
-            column,
-            problem: NoRun::Units { cell },
-        })
+        let mut texts = self.texts.into_iter().filter(|text| text.has_number);
+        let (text, is_alone) = (texts.next()?, texts.next().is_none());
+        if self.has_one && is_alone && text.is_name() {
+            return None;
+        }
+        let column = reader.headers().ok()?.get(text.place).unwrap_or_default().to_owned();
+        let problem = NoRun::Units { cell: text.cell };
+        Some(NoRunError { path: path.to_owned(), at: self.at, column, problem })
+    }
+}
+
+impl AboveNumber {
+    /// Whether it is the name of a run whose other cells are 1, as `baseline` above runs 0, 1 and 2, and no unit: these have few letters or signs.
+    fn is_name(&self) -> bool {
+        let letters = self.cell.chars().filter(|c| c.is_alphabetic()).count();
+        let is_plain = self.cell.chars().all(|c| c.is_alphanumeric() || " _-".contains(c));
+        self.place == 0 && !self.has_fraction && letters >= 4 && is_plain
     }
 }
 
 fn look_csv(
     path: &Path,
     text: &CsvText,
-    form: (u8, usize),
+    (separator, columns): (u8, &[String]),
     looked: &mut [Looked],
 ) -> Result<ControlFlow<NoRunError>, ForeignError> {
-    let mut reader = reader(path, text, form)?;
+    let mut reader = reader(path, text, (separator, columns.len()))?;
     let mut row = csv::StringRecord::new();
     let run = looked.iter().find(|one| one.is_run).map(|one| one.place);
     let mut above: Option<AboveNumbers> = None;
@@ -201,7 +307,7 @@ fn look_csv(
         let at = || format!("line {}", row.position().map_or(0, csv::Position::line));
         for one in &mut *looked {
             let cell = row.get(one.place).unwrap_or_default();
-            let found = one.add(path, at, cell);
+            let found = one.add(path, at, cell, columns);
             if found.is_break() {
                 return Ok(found);
             }
@@ -217,6 +323,7 @@ fn look_csv(
 
 fn look_parquet(
     path: &Path,
+    columns: &[String],
     looked: &mut [Looked],
 ) -> Result<ControlFlow<NoRunError>, ForeignError> {
     let failed = |error: ParquetError| unread(path, &error);
@@ -236,7 +343,8 @@ fn look_parquet(
             match cells(path, &*group, one.place)? {
                 Cells::Texts(cells) => {
                     for (row, cell) in cells.into_iter().enumerate() {
-                        let found = one.add(path, || at(row), cell.as_deref().unwrap_or_default());
+                        let found =
+                            one.add(path, || at(row), cell.as_deref().unwrap_or_default(), columns);
                         if found.is_break() {
                             return Ok(found);
                         }
