@@ -9,6 +9,7 @@ mod of_parquet;
 mod parquet_cells;
 mod reason;
 mod row_at;
+mod run_names;
 mod texts;
 mod twice;
 mod written;
@@ -25,8 +26,8 @@ pub use no_runs::NoRunError;
 use of_csv::{CsvText, csv_columns, scan_csv};
 use of_folder::{Folder, NOT_REGULAR, PARQUET, has_parquet_name};
 use of_parquet::{parquet_columns, scan_parquet};
+pub use run_names::RunNames;
 pub use twice::TwiceError;
-pub(crate) use written::number;
 
 use crate::{column::Column, folder::RUNS, kept::Rows, origin::Origin, requirement::Counting};
 

@@ -78,7 +78,6 @@ mod number;
 mod origin;
 mod requirement;
 mod room;
-mod run_names;
 mod runs;
 mod runs_error;
 mod sample;
@@ -115,7 +114,7 @@ pub use folder::{
 };
 pub use forecast::{Forecast, rough_size, rough_time};
 pub use foreign::{
-    Columns, ForeignError, ForeignTable, NoRunError, OfModels, RowsError, TwiceError,
+    Columns, ForeignError, ForeignTable, NoRunError, OfModels, RowsError, RunNames, TwiceError,
 };
 pub use format::{Extent, FormatError, TableFormat, TableWriter};
 pub use gyradius_statistics::Verdict;
@@ -132,7 +131,6 @@ pub use requirement::{
     share_in_percent, stated_in_percent,
 };
 pub use room::disk_left;
-pub use run_names::RunNames;
 pub use runs::Runs;
 pub use runs_error::RunsError;
 pub use sample::{SampleSummary, bounded};

@@ -2,8 +2,8 @@
 
 use std::{collections::BTreeMap, path::PathBuf};
 
-use super::{ForeignError, ForeignTable, only_place};
-use crate::{column::Column, run_names::RunNames};
+use super::{ForeignError, ForeignTable, only_place, run_names::RunNames};
+use crate::column::Column;
 
 /// A run that has two rows.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -6,7 +6,7 @@ use crate::csv_lines::is_error;
 const MISSING: [&str; 7] = ["", "nan", "na", "n/a", "null", "none", "-"];
 
 /// What stands in a cell: a number, or nothing; none if it is something else.
-pub(crate) fn number(cell: &str) -> Option<Option<f64>> {
+pub(super) fn number(cell: &str) -> Option<Option<f64>> {
     if let Ok(number) = cell.parse::<f64>() {
         return Some(Some(number).filter(|x| !x.is_nan()));
     }

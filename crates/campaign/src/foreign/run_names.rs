@@ -2,7 +2,8 @@
 
 use std::{borrow::Cow, collections::BTreeMap};
 
-use crate::{foreign::number, spans::Spans};
+use super::written::number;
+use crate::spans::Spans;
 
 /// Digits at the end of a name that are a number, at most: it is less than 2^64.
 const MOST_DIGITS: usize = 18;
