@@ -370,7 +370,7 @@ fn what_cannot_be_drawn_is_said() {
         ),
         (
             &["a.urdf", "-n", "1", "--mass", "5%", "--links", "fr*"],
-            "states no inertia for \"frame\"",
+            "--links fr*: \"frame\": no inertia in the file",
         ),
         (&["a.urdf", "-n", "1", "--mass", "5%", "--inside", "box"], "neither collision nor visual"),
         (&["bad.urdf", "-n", "1", "--mass", "5%"], "inertia of bad: `gyradius check`"),

@@ -79,6 +79,7 @@ mod title_words;
 mod unit_words;
 mod units;
 mod walk;
+mod without;
 mod xml;
 
 /// What a [`BodyJudgement`] says of an inertia.
@@ -107,6 +108,7 @@ pub use ten_moments::{TenMomentsError, TenMomentsFile};
 pub use ten_table::{TenRow, TenTable, TenTableError};
 pub use units::{UnitError, UnitProblem};
 pub use walk::{Found, find};
+pub use without::WithoutInertia;
 
 /// Tolerance that suits files: they carry about six digits, and a plate or a rod written with six
 /// digits lies on the boundary to within that, but for one rod in 36 and fewer plates, which lie up to 2.3e-6 beyond.

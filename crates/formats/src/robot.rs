@@ -9,7 +9,7 @@ use std::{
 
 use crate::{
     CompilerDoubt, FileBodyError, FileProblem, Format, Gap, InertiaFile, LinkProblem, Products,
-    RobotError, compiler,
+    RobotError, WithoutInertia, compiler,
     copy::edits,
     edit::{Edit, edited},
     frame::{self, Frame},
@@ -48,6 +48,8 @@ pub struct RobotFile {
     file: InertiaFile,
     links: Vec<RobotLink>,
     without: Vec<String>,
+    /// Those of them of which the simulator computes the inertia.
+    computed: HashSet<String>,
     references: Vec<String>,
     /// Why MuJoCo does not use what is written.
     overridden: Option<String>,
@@ -290,9 +292,18 @@ impl RobotFile {
         });
         let overridden = (format == Format::Mjcf).then(|| compiler::overridden(&tree)).flatten();
         let doubts = compiler::doubts(&tree, format);
-        let without = without.into_iter().map(|link| names.next(name_of(link))).collect();
+        // A link of SDF that is without though it has an `<inertial>` has one that is computed.
+        let is_computed = |link: Node<'_, '_>| {
+            format == Format::Sdf && !possible_inertials(link, format).is_empty()
+        };
+        let without =
+            without.into_iter().map(|link| (names.next(name_of(link)), is_computed(link)));
+        let without: Vec<(String, bool)> = without.collect();
+        let computed = without.iter().filter(|(_, computed)| *computed);
+        let computed = computed.map(|(name, _)| name.clone()).collect();
+        let without = without.into_iter().map(|(name, _)| name).collect();
         let references = references::relative(&tree);
-        Ok(Self { links, without, references, overridden, doubts, file })
+        Ok(Self { links, without, computed, references, overridden, doubts, file })
     }
 
     /// The path that was read.
@@ -318,6 +329,16 @@ impl RobotFile {
     #[must_use]
     pub fn links_without_inertia(&self) -> &[String] {
         &self.without
+    }
+
+    /// Why a link is one of [those without inertia](Self::links_without_inertia), by its name there.
+    #[must_use]
+    pub fn why_without(&self, name: &str) -> WithoutInertia {
+        if self.computed.contains(name) {
+            WithoutInertia::Computed
+        } else {
+            WithoutInertia::NotStated
+        }
     }
 
     /// Points in the frame of a link of which its geometry is the convex hull: that of its collisions, or of its visuals

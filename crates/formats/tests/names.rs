@@ -1,6 +1,6 @@
 //! What links are called: those with an inertia, what stands beside it, and those without.
 
-use gyradius_formats::{LinkProblem, RobotFile, RobotLink};
+use gyradius_formats::{LinkProblem, RobotFile, RobotLink, WithoutInertia};
 use proptest::{prelude::*, sample::select};
 use std::path::Path;
 
@@ -144,6 +144,11 @@ proptest! {
             .collect();
         let listed = file.links_without_inertia();
         prop_assert_eq!(&without, &listed.iter().map(|name| written(name)).collect::<Vec<_>>());
+        let kinds = items.iter().map(|(_, kind)| kind).filter(|kind| [Without, Computed, Made].contains(kind));
+        for (kind, name) in kinds.zip(listed) {
+            let is_computed = file.why_without(name) == WithoutInertia::Computed;
+            prop_assert_eq!(is_computed, *kind == Computed, "{}", name);
+        }
         for (i, name) in listed.iter().enumerate() {
             prop_assert!(!names.contains(&name.as_str()) && !listed[..i].contains(name), "{}", name);
         }

@@ -1,7 +1,7 @@
 //! Random robots in every dress: links are read in their own frames, and a copy differs in numbers alone and reads back
 //! as what was meant.
 
-use gyradius_formats::{LinkProblem, RobotError, RobotFile, RobotLink};
+use gyradius_formats::{LinkProblem, RobotError, RobotFile, RobotLink, WithoutInertia};
 use gyradius_inertia::{Inertia, MassProperties, SecondMoments};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use proptest::{prelude::*, sample::select};
@@ -840,6 +840,8 @@ fn what_is_computed_from_shapes_is_no_inertia_of_the_file() {
         (names, file.links_without_inertia()),
         (vec!["b", "c"], &["a", "d"].map(String::from)[..])
     );
+    let why = ["a", "d"].map(|name| file.why_without(name));
+    assert_eq!(why, [WithoutInertia::Computed, WithoutInertia::NotStated]);
 }
 
 #[test]

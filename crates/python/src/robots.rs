@@ -38,8 +38,8 @@ pub(crate) fn load_robot(py: Python<'_>, path: PathBuf) -> PyResult<(Vec<Link>, 
         let for_gazebo = robot.links().iter().filter(is_for_gazebo);
         let for_gazebo = for_gazebo.map(|link| format!("{}: {}", link.name(), LinkProblem::Gazebo));
         let without = robot.links_without_inertia().iter();
-        let why = || Some("no inertia in the file".to_owned());
-        let without = without.map(|name| (name.clone(), None, why(), false));
+        let why = |name: &str| Some(robot.why_without(name).to_string());
+        let without = without.map(|name| (name.clone(), None, why(name), false));
         let links = robot.links().iter().filter(|link| !is_for_gazebo(link));
         let links = links.map(of).chain(without).collect();
         let overridden = robot.overridden_by().map(|told| {

@@ -11,7 +11,7 @@ mod table;
 use gyradius_campaign::{CampaignError, FormatError, TableError};
 use gyradius_estimation::{StatementError, Statements};
 use gyradius_formats::{
-    Format, Gap, GapKind, LinkProblem, RobotError, RobotFile, RobotLink, WriteError,
+    Format, Gap, GapKind, LinkProblem, RobotError, RobotFile, RobotLink, WithoutInertia, WriteError,
 };
 use gyradius_inertia::MassProperties;
 use std::sync::{Arc, atomic::AtomicBool};
@@ -60,9 +60,9 @@ pub struct RobotDraw<'a> {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LeftBecause {
-    /// The file states no inertia for it.
-    #[error("no inertia in the file")]
-    NoInertia,
+    /// The file does not say the numbers of its inertia.
+    #[error("{0}")]
+    NoInertia(WithoutInertia),
     /// It has no mass.
     #[error("a mass of 0 kg")]
     NoMass,
@@ -91,8 +91,10 @@ impl<'a> RobotDraw<'a> {
         let beside = |link: &RobotLink| link.numbers().err().filter(|why| why.is_beside()).cloned();
         let own = robot.links().iter().filter(|link| beside(link).is_none());
         let names: Vec<&str> = own.map(RobotLink::name).collect();
-        let mut picked =
-            pick::picked(&names, robot.links_without_inertia(), &options.links)?.into_iter();
+        let without = robot.links_without_inertia().iter();
+        let without = without.map(|name| (name.clone(), robot.why_without(name)));
+        let without: Vec<_> = without.collect();
+        let mut picked = pick::picked(&names, &without, &options.links)?.into_iter();
         let (mut links, mut left) = (Vec::new(), Vec::new());
         let (mut impossible, mut outside) = (Vec::new(), Vec::new());
         let (mut unreadable, mut beyond) = (Vec::new(), Vec::new());
@@ -128,8 +130,7 @@ impl<'a> RobotDraw<'a> {
         if !beyond.is_empty() {
             return Err(RobotDrawError::Statement { links: beyond });
         }
-        let without = robot.links_without_inertia().iter();
-        left.extend(without.map(|name| (name.clone(), LeftBecause::NoInertia)));
+        left.extend(without.into_iter().map(|(name, why)| (name, LeftBecause::NoInertia(why))));
         if links.is_empty() {
             let why = why_nothing(robot, &left);
             return Err(RobotDrawError::Nothing { format: robot.format(), why });

@@ -1,11 +1,12 @@
 //! Links by their names, in which `*` and `?` stand for others.
 
 use super::RobotDrawError;
+use gyradius_formats::WithoutInertia;
 
 /// Which of the links with inertia some names mean: all of them if there are no names.
 pub(super) fn picked(
     links: &[&str],
-    without: &[String],
+    without: &[(String, WithoutInertia)],
     patterns: &[String],
 ) -> Result<Vec<bool>, RobotDrawError> {
     if patterns.is_empty() {
@@ -15,8 +16,8 @@ pub(super) fn picked(
         if links.iter().any(|link| matches(pattern, link)) {
             continue;
         }
-        let why = match without.iter().find(|link| matches(pattern, link)) {
-            Some(link) => format!("the file states no inertia for \"{link}\""),
+        let why = match without.iter().find(|(link, _)| matches(pattern, link)) {
+            Some((link, why)) => format!("\"{link}\": {why}"),
             None => {
                 let some: Vec<&str> = links.iter().take(20).copied().collect();
                 let more = if links.len() > some.len() { ", …" } else { "" };
@@ -81,9 +82,12 @@ mod tests {
 
     #[test]
     fn a_name_that_means_nothing_is_an_error() {
+        let without = [WithoutInertia::NotStated, WithoutInertia::Computed];
+        let without =
+            ["frame", "shell"].map(str::to_owned).into_iter().zip(without).collect::<Vec<_>>();
         let pick = |patterns: &[&str]| {
             let patterns: Vec<String> = patterns.iter().map(|p| (*p).to_owned()).collect();
-            picked(&["arm_1", "arm_2", "base"], &["frame".to_owned()], &patterns)
+            picked(&["arm_1", "arm_2", "base"], &without, &patterns)
         };
         assert_eq!(pick(&[]).unwrap(), [true; 3]);
         assert_eq!(pick(&["arm*", "base"]).unwrap(), [true; 3]);
@@ -93,6 +97,7 @@ mod tests {
             error(&["arm*", "leg"]),
             "--links leg: no link matches it; the links with inertia are arm_1, arm_2, base"
         );
-        assert_eq!(error(&["fr*"]), "--links fr*: the file states no inertia for \"frame\"");
+        assert_eq!(error(&["fr*"]), "--links fr*: \"frame\": no inertia in the file");
+        assert!(error(&["sh*"]).starts_with("--links sh*: \"shell\": its inertia is computed"));
     }
 }

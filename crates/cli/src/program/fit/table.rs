@@ -236,7 +236,7 @@ fn of_links(file: InertiaFile, place: &str, form: Option<TenForm>) -> Result<Giv
         }
     }
     let without = robot.links_without_inertia().iter();
-    unread.extend(without.map(|name| format!("{name}: no inertia in the file")));
+    unread.extend(without.map(|name| format!("{name}: {}", robot.why_without(name))));
     unread.extend(robot.overridden_by().map(|told| {
         format!("the compiler says {told}: MuJoCo takes other numbers than those of the bodies")
     }));
