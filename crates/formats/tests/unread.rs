@@ -147,7 +147,9 @@ proptest! {
         prop_assert_eq!(ten.rows()[0].values().is_ok(), is_true, "{}", text);
         if let Err(error) = file.bodies()[0].inertia() {
             let said = error.to_string();
-            prop_assert!(said.contains(&format!("{point:?}")) && said.contains(&format!("{cell:?}")), "{}", said);
+            // Numbers are inertias about another point, which no word makes those of the row.
+            let names_point = cell == "0" || said.contains(&format!("{point:?}"));
+            prop_assert!(names_point && said.contains(&format!("{cell:?}")), "{}", said);
         }
     }
 }

@@ -96,14 +96,14 @@ const STATISTICS: [&str; 63] = [
     "deviazione",
 ];
 
-/// What a value may be off, and what it should be. A model may be called so, of which all rows are then.
-const ASIDE: [&str; 8] = [
+/// What a value may be off, and what it should be. A model may be called so, of which all rows are then. `Nominal` is none of them: a run or a
+/// body is called so.
+const ASIDE: [&str; 7] = [
     "uncertainty",
     "uncertainties",
     "tolerance",
     "tolerances",
     "cov",
-    "nominal",
     "requirement",
     "requirements",
 ];
@@ -233,7 +233,7 @@ const FUNCTIONS: [&str; 5] = ["stdev", "stddev", "var", "percentile", "quartile"
 /// Tells among the names in a column, from the first row on, those of rows that sum up others.
 ///
 /// A share without a word of a statistic, such as `95%` or `P99.73`, is one of them where the first name of the column is none: a column of
-/// shares says something else. The same holds for words as `Uncertainty` and `Nominal`.
+/// shares says something else. The same holds for words as `Uncertainty` and `Requirement`.
 ///
 /// ```
 /// use gyradius_statistics::SummaryNames;

@@ -107,15 +107,6 @@ impl Folder<'_> {
         opened.map_err(|problem| self.failed(problem))
     }
 
-    /// Removes the blocks of a campaign that is put nowhere, if some are left.
-    ///
-    /// # Errors
-    /// One cannot be removed.
-    pub fn clear_beside(&self, name: &str) -> Result<(), FolderError> {
-        let cleared = Area::called(self.hidden.place(), name).clear();
-        cleared.map_err(|error| self.failed(error.into()))
-    }
-
     /// That nothing is in the places of blocks of a model that are to be done, but what may be replaced.
     ///
     /// # Errors

@@ -235,6 +235,15 @@ impl<'a> Folder<'a> {
         Ok(self.place.clone())
     }
 
+    /// Removes the blocks of a campaign that is put nowhere, if some are left.
+    ///
+    /// # Errors
+    /// One cannot be removed.
+    pub fn clear_beside(&self, name: &str) -> Result<(), FolderError> {
+        let cleared = area::Area::called(self.hidden.place(), name).clear();
+        cleared.map_err(|error| self.failed(error.into()))
+    }
+
     /// Lets go of an empty folder that others are about to fill: to take it away would take it from under them.
     fn leave(mut self) {
         self.journal.abandon(&self.hidden);

@@ -12,6 +12,18 @@ use crate::turns::FIXED;
 /// The six entries, in their order.
 const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
+/// What a radian about each principal axis adds to the form of each entry, to first order.
+pub(super) fn moved_by_turns(attitude: &UnitQuaternion<f64>) -> [[Vector3<f64>; 3]; 6] {
+    let r = attitude.to_rotation_matrix();
+    ENTRIES.map(|(a, b)| {
+        [0, 1, 2].map(|j| {
+            let (m, n) = ((j + 1) % 3, (j + 2) % 3);
+            let moved = r[(m, a)] * r[(n, b)] + r[(n, a)] * r[(m, b)];
+            Vector3::ith(m, moved) - Vector3::ith(n, moved)
+        })
+    })
+}
+
 /// An entry is Σ_k K_k M_k with forms M of the axes: the mean and the covariance of M for each entry.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Forms {
@@ -27,17 +39,10 @@ impl Forms {
 
     /// What axes that nothing moves add, since a law holds them no closer than [`FIXED`], to first order: no law has less.
     pub(super) fn held(attitude: &UnitQuaternion<f64>) -> Self {
-        let r = attitude.to_rotation_matrix();
-        let of_entry = |(a, b)| -> Matrix3<f64> {
-            let about = |j: usize| {
-                let (m, n) = ((j + 1) % 3, (j + 2) % 3);
-                let moved = FIXED * (r[(m, a)] * r[(n, b)] + r[(n, a)] * r[(m, b)]);
-                let apart = Vector3::ith(m, moved) - Vector3::ith(n, moved);
-                apart * apart.transpose()
-            };
-            (0..3).map(about).sum()
+        let of_entry = |moved: [Vector3<f64>; 3]| -> Matrix3<f64> {
+            moved.map(|moved| FIXED * FIXED * moved * moved.transpose()).iter().sum()
         };
-        Self { mean: [Vector3::zeros(); 6], covariance: ENTRIES.map(of_entry) }
+        Self { mean: [Vector3::zeros(); 6], covariance: moved_by_turns(attitude).map(of_entry) }
     }
 
     /// About axes that turn: what is summed is what the forms are more than about the mean, so that small covariances keep their
@@ -81,7 +86,7 @@ impl Forms {
 }
 
 /// The forms of each entry.
-fn forms(q: &UnitQuaternion<f64>) -> [Vector3<f64>; 6] {
+pub(super) fn forms(q: &UnitQuaternion<f64>) -> [Vector3<f64>; 6] {
     let r = q.to_rotation_matrix();
     let [x, y, z] = [0, 1, 2].map(|a| r.matrix().column(a).into_owned());
     let one = Vector3::from_element(1.0);

@@ -9,6 +9,7 @@ mod impossible;
 pub(crate) mod levenberg_marquardt;
 mod nodes;
 mod parts;
+mod reach;
 mod scatter;
 mod solve;
 mod square_moments;
@@ -84,7 +85,8 @@ impl Statements {
     /// deviations of the roots, those on the products the deviations of the turns, and a mass the share
     /// α of it that the inertia follows. Their least squares solution is taken, by Levenberg and Marquardt's
     /// method, of the errors ln(σ/σ_stated) of the deviations that the law has by quadrature: three times the error where
-    /// an entry would be surer than stated, and a hundred times that of a moment beside stated products. Where independent
+    /// an entry would be surer than stated, but next to nothing of what a product falls short that nothing can make so large, and a
+    /// hundred times that of a moment beside stated products. Where independent
     /// roots and turns do not have them, correlations are opened too, and the search starts anew from several of them.
     /// Axes that nothing moves are held to 2e-6 rad and not closer, so that the products of the law scatter by some
     /// millionths of the moments where [`turns`](StatedModel::turns) are zero.

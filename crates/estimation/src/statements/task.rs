@@ -12,6 +12,8 @@ use super::{
 const MOMENTS_FIRST: f64 = 100.0;
 /// An entry that is surer than stated is this much worse than one that is less sure.
 const SURER: f64 = 3.0;
+/// What a product falls short that nothing can make so large counts this much.
+const BEYOND_REACH: f64 = 0.02;
 /// What a mass centre adds counts this much less beside what is stated.
 const ADDED_LAST: f64 = 1.0 / 30.0;
 /// Deviations below this share of the largest beside them count as this share.
@@ -94,13 +96,19 @@ impl Compared {
         if error < 0.0 { SURER * error } else { error }
     }
 
-    /// What that costs beside other errors. A product that falls short counts as [`SURER`] says where it is nearly what is stated, and never more than one
-    /// that is e times too large: one that the axes cannot move would make the others many times what is stated of them.
-    pub(super) fn cost(&self) -> f64 {
-        match (self.even_cost(), self.entry) {
-            (cost, 3..) if cost < 0.0 => libm::expm1(cost),
-            (cost, _) => cost,
+    /// What that costs beside other errors, with how far each product can be moved. What it falls short beyond that hardly counts: it would make the
+    /// others many times what is stated of them.
+    pub(super) fn cost(&self, reach: &[f64; 3]) -> f64 {
+        let cost = self.even_cost();
+        let Some(reach) = self.entry.checked_sub(3).and_then(|product| reach.get(product)) else {
+            return cost;
+        };
+        let had = (reach * reach).max(self.found);
+        if cost >= 0.0 || had >= self.wanted {
+            return cost;
         }
+        let beyond = SURER * Self { found: had, ..*self }.error();
+        cost + (BEYOND_REACH - 1.0) * beyond
     }
 }
 

@@ -4,6 +4,7 @@ use nalgebra::{DVector, Matrix3, Vector3};
 
 use super::{
     levenberg_marquardt::{Problem, Range},
+    reach::{MOST_TURN, most_turns, reach, turn},
     scatter::{Scatter, roots_of},
     task::{Asked, Point, Task},
 };
@@ -14,8 +15,6 @@ const PULL: f64 = 1e-4;
 const CORRELATED: f64 = 1e-3;
 /// What it costs that the inertia does not follow the mass.
 const FOLLOWS: f64 = 0.03;
-/// v/(1 + 8v) of a rotation with the variance v that may be any.
-const MOST_TURN: f64 = 0.125;
 
 /// Where the unknowns of the roots stand in M: on the diagonal and beside it.
 const ENTRIES_OF_M: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (1, 0), (2, 0), (2, 1)];
@@ -40,6 +39,8 @@ pub(super) struct Unknowns<'a> {
     basis: Matrix3<f64>,
     pub(super) open: Vec<usize>,
     pub(super) guess: Values,
+    /// How far the products can be moved.
+    reach: [f64; 3],
     /// No error counts more than that of a product.
     evenly: bool,
 }
@@ -66,7 +67,7 @@ impl<'a> Unknowns<'a> {
             open.push(SHARE);
         }
         let basis = Matrix3::from_diagonal(&first_roots(task));
-        Self { task, basis, open, guess: first_guess(task), evenly: false }
+        Self { task, basis, open, guess: first_guess(task), reach: reach(task), evenly: false }
     }
 
     /// The same where no error counts more than that of a product: where all that is asked can be had, it is the same that is
@@ -89,7 +90,7 @@ impl<'a> Unknowns<'a> {
 
     /// The same, of which something else is asked.
     pub(super) fn of(self, task: &'a Task) -> Self {
-        Self { task, ..self }
+        Self { task, reach: reach(task), ..self }
     }
 
     pub(super) fn trial(&self, x: Values) -> Trial {
@@ -156,7 +157,11 @@ impl Problem for Unknowns<'_> {
     fn residuals(&self, trial: &Trial) -> DVector<f64> {
         let compared = self.task.compare(&trial.at);
         let errors = compared.iter().map(|it| {
-            if self.evenly { it.even_cost() * it.counts.min(1.0) } else { it.cost() * it.counts }
+            if self.evenly {
+                it.even_cost() * it.counts.min(1.0)
+            } else {
+                it.cost(&self.reach) * it.counts
+            }
         });
         let most = most_turns(self.task);
         let costs = self.open.iter().map(|&i| match i {
@@ -196,20 +201,6 @@ impl Problem for Unknowns<'_> {
 fn correlation(covariance: &Matrix3<f64>, (i, j): (usize, usize)) -> f64 {
     let size = (covariance[(i, i)] * covariance[(j, j)]).sqrt();
     if size > 0.0 { covariance[(i, j)] / size } else { 0.0 }
-}
-
-/// The most of each rotation.
-fn most_turns(task: &Task) -> [f64; 3] {
-    task.axes.unwrap_or([f64::INFINITY; 3]).map(turn)
-}
-
-/// d with d² = v/(1 + 8v): a bounded measure of a rotation of any variance.
-fn turn(variance: f64) -> f64 {
-    if variance.is_finite() {
-        (variance / (1.0 + variance / MOST_TURN)).sqrt()
-    } else {
-        MOST_TURN.sqrt()
-    }
 }
 
 /// A covariance of these deviations, and of correlations given by three angles: the rows of its root are

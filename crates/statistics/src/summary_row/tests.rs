@@ -86,7 +86,6 @@ fn names_of_sums_are_told_from_those_of_parts() {
         "COV (%)",
         "Uncertainty",
         "Tolerance",
-        "Nominal value",
         "REQUIREMENT",
     ] {
         assert_eq!(Kind::of(name), Kind::Share, "{name}");

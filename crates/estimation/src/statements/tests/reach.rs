@@ -58,6 +58,36 @@ proptest! {
         }
     }
 
+    /// A product that is stated far above the others, which are to be small or none, is not given up for them: turns about tilted axes that go together
+    /// have it, as far as the axes may turn.
+    #[test]
+    fn one_large_product_is_had_beside_small_ones(
+        gaps in prop::array::uniform2(0.1..0.4_f64),
+        tilt in prop::array::uniform3(-0.05..0.05_f64),
+        turn in (-3.0..-1.5_f64).prop_map(|power| libm::pow(10.0, power)),
+        small in prop::array::uniform2(prop_oneof![Just(0.0), (-4.0..-1.5_f64).prop_map(|power| libm::pow(10.0, power))]),
+        degrees in prop::option::of(0.5..10.0_f64),
+        place in 0..3_usize,
+    ) {
+        let moments = [1.0 + gaps[0] + gaps[1], 1.0 + gaps[0], 1.0];
+        let [m, n] = [[0, 1], [0, 2], [1, 2]][place];
+        let gap = moments[m] - moments[n];
+        let size = turn * gap;
+        let mut stated = small.map(|share| share * size).to_vec();
+        stated.insert(place, size);
+        let stated = [stated[0], stated[1], stated[2]];
+        let axes = degrees.map(|degrees| AxesStatement::each([degrees; 3], 1.0).unwrap());
+        let products = Some(ProductsStatement::new(stated, 1.0).unwrap());
+        let statements = Statements { products, axes, ..Statements::default() };
+        let model = statements.model(&body(moments, tilt), None).unwrap();
+        let implied = model.implied().deviations();
+        let reach = degrees.map_or(size, |degrees| size.min(gap * degrees.to_radians()));
+        prop_assert!(implied[3 + place] > 0.4 * reach, "{stated:?}: {implied:?}");
+        for (found, stated) in implied[3..].iter().zip(stated) {
+            prop_assert!(*found < stated + 0.02 * size, "{stated:?}: {implied:?}");
+        }
+    }
+
     /// Axes of which every stated turn mixes two equal moments that do not scatter are told to have no effect, and have none; others have one.
     #[test]
     fn turns_without_effect_are_told(
