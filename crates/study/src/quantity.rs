@@ -4,12 +4,10 @@
 use gyradius_campaign::{Row, Table};
 use gyradius_report::with_unit;
 use gyradius_separation::{AnyLoad, LoadId, LoadKind, Separation};
-use gyradius_statistics::Survey;
 use std::borrow::Cow;
 
 use crate::{
     body::{Body, Entry},
-    rounding::Rounding,
     run::Run,
 };
 
@@ -307,15 +305,6 @@ impl Quantity {
     #[must_use]
     pub fn unit(self) -> &'static str {
         self.declaration().unit
-    }
-
-    /// Whether its values differ by more than rounding.
-    pub(crate) fn varies(self, survey: &Survey, rounding: Rounding) -> bool {
-        let range = survey.minimum().zip(survey.maximum());
-        let (column, unit) = (self.column(), self.unit());
-        range.is_some_and(|((least, _), (most, _))| {
-            rounding.is_exceeded(least, most, (&column, unit))
-        })
     }
 
     /// What it means, in a sentence.

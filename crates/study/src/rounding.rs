@@ -1,6 +1,7 @@
 //! Whether numbers differ by more than rounding.
 
 use gyradius_separation::{MovingBody, Separation, Settings};
+use gyradius_statistics::Survey;
 
 use crate::quantity::Quantity;
 
@@ -134,6 +135,15 @@ impl Rounding {
     pub(crate) fn is_exceeded(self, minimum: f64, maximum: f64, of: (&str, &str)) -> bool {
         let size = self.size(minimum.abs().max(maximum.abs()), of);
         maximum / size - minimum / size > self.share
+    }
+
+    /// Whether the values of a quantity differ by more than rounding.
+    pub(crate) fn is_exceeded_in(self, quantity: Quantity, values: &Survey) -> bool {
+        let (column, unit) = (quantity.column(), quantity.unit());
+        values
+            .minimum()
+            .zip(values.maximum())
+            .is_some_and(|((least, _), (most, _))| self.is_exceeded(least, most, (&column, unit)))
     }
 
     /// Whether a standard deviation is more than rounding of numbers of this size.

@@ -468,7 +468,7 @@ impl Ratio {
     ) -> Self {
         let both = naive.quantity(quantity).zip(physical.quantity(quantity));
         // Over a spread of rounding no ratio means anything.
-        let moving = both.filter(|(_, physical)| quantity.varies(physical, rounding));
+        let moving = both.filter(|(_, physical)| rounding.is_exceeded_in(quantity, physical));
         let deviations = moving.and_then(|(n, p)| n.deviation().zip(p.deviation()));
         let means = both.and_then(|(n, p)| n.mean().zip(p.mean()));
         Self {

@@ -80,7 +80,7 @@ proptest! {
                 }
                 let deviation = survey.moments().unwrap().standard_deviation();
                 let size = rounding.size(survey.mean().unwrap(), (&quantity.column(), quantity.unit()));
-                [quantity.varies(&survey, rounding), rounding.is_exceeded_by(deviation, size)]
+                [rounding.is_exceeded_in(*quantity, &survey), rounding.is_exceeded_by(deviation, size)]
             };
             let all = RATES.iter().chain(&Quantity::PAYLOAD_RATE);
             let found: Vec<_> = all.filter(|rate| varies(rate).contains(&true)).collect();
