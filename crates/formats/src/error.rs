@@ -187,7 +187,7 @@ pub enum FileProblem {
     },
     /// A title, or a comment, says that inertias are about a point other than that of the table.
     #[error(
-        "{said:?} gives inertias a point, which it does not say to be {point}: the inertia of each row must be about that, and the line must say so, or \
+        "{said:?} speaks of the point that inertias are about, and that point may not be {point}: the inertia of each row must be about that, and the line must say so, or \
          not speak of it"
     )]
     TitlePoint {
